@@ -1,0 +1,1 @@
+//! Ray-intersection structures: list, grid, binary and wide hierarchies, triangle-mesh kernels.

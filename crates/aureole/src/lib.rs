@@ -1,0 +1,1 @@
+//! A physically based ray tracer: the facade that Rust users depend on.

@@ -1,0 +1,3 @@
+//! The program `aureole`.
+
+fn main() {}

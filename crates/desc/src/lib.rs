@@ -1,0 +1,1 @@
+//! The scene description: a generic tree of nodes with spans, known to no element.

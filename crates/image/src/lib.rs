@@ -1,0 +1,1 @@
+//! Pixel buffers, codecs, tone curves, image metrics.

@@ -1,0 +1,1 @@
+//! Points, vectors, frames, transforms, rays, bounds, warps, distributions, hashing, ids and arenas.

@@ -1,0 +1,1 @@
+//! Compiles a description into a scene: arenas, two-level acceleration, light picker, ray queries.

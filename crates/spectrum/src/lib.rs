@@ -1,0 +1,1 @@
+//! Wavelengths, spectra, CIE data, colour spaces, up-sampling.

@@ -1,0 +1,1 @@
+//! Statistical tests over closures: chi-square, z-test, furnace, moments, finite differences.
