@@ -1,1 +1,22 @@
 //! Wavelengths, spectra, CIE data, colour spaces, up-sampling.
+//!
+//! Radiance travels through the renderer as a [`Spectrum`]: four lanes that mean R, G, B and a spare in RGB mode, or
+//! the values at four hero wavelengths in spectral mode. Which of the two is a run-time choice ([`ColorMode`]).
+//!
+//! ```
+//! use aureole_spectrum::{Spectrum, SpectrumRole, SpectrumSource, Wavelengths};
+//!
+//! let albedo = SpectrumSource::Rgb([0.8, 0.4, 0.2]).prepare(SpectrumRole::Albedo);
+//! let lanes: Spectrum = albedo.eval(&Wavelengths::RGB);
+//! assert_eq!(lanes.rgb(), [0.8, 0.4, 0.2]);
+//! ```
+
+mod color;
+mod source;
+mod spectrum;
+mod wavelengths;
+
+pub use color::{luminance, srgb_from_linear, srgb_from_xyz, srgb_to_linear, xyz_from_srgb};
+pub use source::{PreparedSpectrum, SpectrumRole, SpectrumSource, Tabulated};
+pub use spectrum::Spectrum;
+pub use wavelengths::{ColorMode, Wavelengths};
