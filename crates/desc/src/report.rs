@@ -1,0 +1,38 @@
+//! Warnings for the user, collected on the way.
+
+use crate::{SceneError, Span};
+
+/// Something that people should know but that does not stop a render.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// What it is.
+    pub message: String,
+    /// How to mend it.
+    pub help: Option<String>,
+    /// Where it was written.
+    pub at: Span,
+}
+
+/// Warnings, and errors beyond the first, gathered while a scene is read and compiled.
+#[derive(Debug, Default)]
+pub struct Report {
+    /// In the order in which they were found.
+    pub warnings: Vec<Warning>,
+    /// Errors found after which reading went on, so that people see several at once.
+    pub errors: Vec<SceneError>,
+}
+
+impl Report {
+    /// Adds a warning; the same one at the same place is kept once.
+    pub fn warn(&mut self, message: impl Into<String>, at: Span) {
+        self.warn_with_help(message, None, at);
+    }
+
+    /// Adds a warning that says how to mend it.
+    pub fn warn_with_help(&mut self, message: impl Into<String>, help: Option<String>, at: Span) {
+        let warning = Warning { message: message.into(), help, at };
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
+    }
+}
