@@ -59,8 +59,12 @@ impl Mesh {
                 AttributeDomain::Face => self.indices.len(),
             };
             if attribute.data.len() != count * attribute.channels {
-                return Err(format!("attribute `{}` has {} values, not {}", attribute.name,
-                    attribute.data.len(), count * attribute.channels));
+                return Err(format!(
+                    "attribute `{}` has {} values, not {}",
+                    attribute.name,
+                    attribute.data.len(),
+                    count * attribute.channels
+                ));
             }
         }
         Ok(())

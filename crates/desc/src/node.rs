@@ -30,8 +30,16 @@ pub enum Family {
 impl Family {
     /// All families, in the order in which they are listed to people.
     pub const ALL: [Self; 10] = [
-        Self::Shape, Self::Bsdf, Self::Texture, Self::Light, Self::Medium, Self::Camera, Self::Film, Self::Filter,
-        Self::Sampler, Self::Integrator,
+        Self::Shape,
+        Self::Bsdf,
+        Self::Texture,
+        Self::Light,
+        Self::Medium,
+        Self::Camera,
+        Self::Film,
+        Self::Filter,
+        Self::Sampler,
+        Self::Integrator,
     ];
 
     /// The word for messages.

@@ -117,7 +117,12 @@ impl Params {
     }
 
     /// Converts a parameter, if it is there.
-    fn convert<T>(&mut self, name: &str, wanted: &str, f: impl Fn(&Value) -> Option<T>) -> Result<Option<T>, SceneError> {
+    fn convert<T>(
+        &mut self,
+        name: &str,
+        wanted: &str,
+        f: impl Fn(&Value) -> Option<T>,
+    ) -> Result<Option<T>, SceneError> {
         let Some(param) = self.take(name) else { return Ok(None) };
         match f(&param.value) {
             Some(value) => Ok(Some(value)),
@@ -168,7 +173,12 @@ impl Params {
             (false, true) => format!("at most {high}"),
             _ => format!("between {low} and {high}"),
         };
-        Err(SceneError::BadParam { param: name.to_owned(), wanted, found: x.to_string(), at: self.span(name) })
+        Err(SceneError::BadParam {
+            param: name.to_owned(),
+            wanted,
+            found: x.to_string(),
+            at: self.span(name),
+        })
     }
 
     /// A whole number, if given.
@@ -201,7 +211,12 @@ impl Params {
             return Ok(x);
         }
         let wanted = format!("between {low} and {high}");
-        Err(SceneError::BadParam { param: name.to_owned(), wanted, found: x.to_string(), at: self.span(name) })
+        Err(SceneError::BadParam {
+            param: name.to_owned(),
+            wanted,
+            found: x.to_string(),
+            at: self.span(name),
+        })
     }
 
     /// A switch.
@@ -236,7 +251,10 @@ impl Params {
         let found = choices.iter().find(|(key, _)| *key == word).map(|(_, value)| *value);
         found.ok_or_else(|| SceneError::BadParam {
             param: name.to_owned(),
-            wanted: format!("one of {}", choices.iter().map(|(key, _)| format!("`{key}`")).collect::<Vec<_>>().join(", ")),
+            wanted: format!(
+                "one of {}",
+                choices.iter().map(|(key, _)| format!("`{key}`")).collect::<Vec<_>>().join(", ")
+            ),
             found: format!("`{word}`"),
             at: self.span(name),
         })
@@ -389,12 +407,17 @@ impl Params {
     /// Warns about every parameter that nobody asked for.
     pub fn warn_unused(&self, element: &str, known: &[ParamDoc], report: &mut Report) {
         for (param, _) in self.list.iter().zip(&self.used).filter(|(_, used)| !**used) {
-            let help = suggest(&param.name, known.iter().map(|doc| doc.name)).map(|near| format!("did you mean `{near}`?"));
+            let help = suggest(&param.name, known.iter().map(|doc| doc.name))
+                .map(|near| format!("did you mean `{near}`?"));
             let help = help.or_else(|| {
                 let names: Vec<_> = known.iter().map(|doc| format!("`{}`", doc.name)).collect();
                 (!names.is_empty()).then(|| format!("{element} knows {}", names.join(", ")))
             });
-            report.warn_with_help(format!("unknown parameter `{}` of {element} is ignored", param.name), help, param.span);
+            report.warn_with_help(
+                format!("unknown parameter `{}` of {element} is ignored", param.name),
+                help,
+                param.span,
+            );
         }
     }
 }

@@ -65,14 +65,18 @@ impl SceneDesc {
     /// # Errors
     /// [`SceneError::UnknownName`] when nothing has that name.
     pub fn set(&mut self, path: &str, text: &str) -> Result<(), SceneError> {
-        let (target, param) = path
-            .rsplit_once('.')
-            .ok_or_else(|| SceneError::invalid(format!("`{path}` is not of the form ELEMENT.PARAMETER"), Span::NONE))?;
+        let (target, param) = path.rsplit_once('.').ok_or_else(|| {
+            SceneError::invalid(format!("`{path}` is not of the form ELEMENT.PARAMETER"), Span::NONE)
+        })?;
         let id = self.find(target)?;
         if param == "kind" {
             self[id].kind = text.to_owned();
         } else {
-            self[id].params.set(Param { name: param.to_owned(), value: Value::parse(text), span: Span::NONE });
+            self[id].params.set(Param {
+                name: param.to_owned(),
+                value: Value::parse(text),
+                span: Span::NONE,
+            });
         }
         Ok(())
     }
@@ -95,10 +99,16 @@ impl SceneDesc {
         }
         let named = self.nodes().find(|(_, node)| node.name.as_deref() == Some(target)).map(|(id, _)| id);
         named.ok_or_else(|| {
-            let mut known: Vec<String> = ["camera", "film", "filter", "sampler", "integrator"].map(str::to_owned).to_vec();
+            let mut known: Vec<String> =
+                ["camera", "film", "filter", "sampler", "integrator"].map(str::to_owned).to_vec();
             known.extend(self.nodes.iter().filter_map(|node| node.name.clone()));
             let near = suggest(target, known.iter().map(String::as_str)).map(str::to_owned);
-            SceneError::UnknownName { what: "element", name: target.to_owned(), known: near.into_iter().collect(), at: Span::NONE }
+            SceneError::UnknownName {
+                what: "element",
+                name: target.to_owned(),
+                known: near.into_iter().collect(),
+                at: Span::NONE,
+            }
         })
     }
 }

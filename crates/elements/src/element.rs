@@ -1,0 +1,141 @@
+//! The door through which descriptions become elements.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use aureole_desc::{Node, NodeId, ParamDoc, Params, Report, SceneError, Span, Textured};
+use aureole_image::{Bitmap, Encoding};
+use aureole_math::Id;
+use aureole_spectrum::{SpectrumRole, SpectrumSource};
+
+use crate::{Material, Shape, Texture};
+
+/// An element of some family: its manual, and how it is built.
+pub trait Element: Sized {
+    /// What it models, in one sentence.
+    const SUMMARY: &'static str;
+    /// The parameters that [`from_params`](Self::from_params) asks for.
+    const PARAMS: &'static [ParamDoc];
+
+    /// Builds the element.
+    ///
+    /// # Errors
+    /// A parameter that is missing, of the wrong type or out of range, with its place in the scene file.
+    fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError>;
+}
+
+/// An element's manual, as `aureole list` prints it.
+#[derive(Clone, Copy, Debug)]
+pub struct Manual {
+    /// The kind's name in scene files.
+    pub kind: &'static str,
+    /// What it models.
+    pub summary: &'static str,
+    /// Its parameters.
+    pub params: &'static [ParamDoc],
+}
+
+impl Manual {
+    pub(crate) fn of<E: Element>(kind: &'static str) -> Self {
+        Self { kind, summary: E::SUMMARY, params: E::PARAMS }
+    }
+}
+
+/// The image plane, which cameras need to know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FilmSpec {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+}
+
+impl FilmSpec {
+    /// Width over height.
+    pub fn aspect(&self) -> f32 {
+        self.width as f32 / self.height as f32
+    }
+}
+
+/// Turns names of other elements into ids, and files into pixels. Nothing else of a scene is visible to an element.
+pub trait Resolver {
+    /// The texture that a node describes, built once.
+    ///
+    /// # Errors
+    /// Whatever is wrong with that node.
+    fn texture(&mut self, node: NodeId) -> Result<Id<Texture>, SceneError>;
+
+    /// A texture that is constant.
+    fn constant(&mut self, spectrum: &SpectrumSource, role: SpectrumRole) -> Id<Texture>;
+
+    /// The material that a node describes, built once.
+    ///
+    /// # Errors
+    /// Whatever is wrong with that node.
+    fn material(&mut self, node: NodeId) -> Result<Id<Material>, SceneError>;
+
+    /// The pixels of an image file, read once. A file that cannot be read gives a placeholder and a warning.
+    ///
+    /// # Errors
+    /// Only when a placeholder would make no sense.
+    fn bitmap(&mut self, path: &Path, encoding: Encoding, at: Span) -> Result<Arc<Bitmap>, SceneError>;
+
+    /// The image plane.
+    fn film(&self) -> FilmSpec;
+
+    /// The shape that an area light sits on.
+    fn emitting_shape(&self) -> Option<Id<Shape>>;
+
+    /// Where warnings go.
+    fn report(&mut self) -> &mut Report;
+}
+
+/// Builds an element and warns about parameters that it did not ask for.
+pub(crate) fn build<E: Element>(node: &Node, resolver: &mut dyn Resolver) -> Result<E, SceneError> {
+    let mut params = node.params.clone();
+    let element = E::from_params(&mut params, resolver).map_err(|error| with_place(error, node.span))?;
+    params.warn_unused(&format!("{} `{}`", node.family, node.kind), E::PARAMS, resolver.report());
+    Ok(element)
+}
+
+/// An error without a place of its own is at its element.
+fn with_place(error: SceneError, place: Span) -> SceneError {
+    match error {
+        SceneError::Invalid { message, at } if at.is_none() => SceneError::Invalid { message, at: place },
+        SceneError::MissingParam { element, param, wanted, at } if at.is_none() => {
+            SceneError::MissingParam { element, param, wanted, at: place }
+        }
+        other => other,
+    }
+}
+
+/// A parameter that is a texture, a spectrum or a number, as a texture.
+///
+/// # Errors
+/// [`SceneError::BadParam`], or whatever is wrong with the texture.
+pub fn spectrum_texture(
+    params: &mut Params,
+    resolver: &mut dyn Resolver,
+    name: &str,
+    default: f32,
+    role: SpectrumRole,
+) -> Result<Id<Texture>, SceneError> {
+    match params.try_textured(name)? {
+        Some(Textured::Node(node)) => resolver.texture(node),
+        Some(Textured::Constant(spectrum)) => Ok(resolver.constant(&spectrum, role)),
+        None => Ok(resolver.constant(&SpectrumSource::Uniform(default), role)),
+    }
+}
+
+/// A parameter that is a texture or a number, as a texture of numbers.
+///
+/// # Errors
+/// [`SceneError::BadParam`], or whatever is wrong with the texture.
+pub fn float_texture(
+    params: &mut Params,
+    resolver: &mut dyn Resolver,
+    name: &str,
+    default: f32,
+) -> Result<Id<Texture>, SceneError> {
+    spectrum_texture(params, resolver, name, default, SpectrumRole::Unbounded)
+}

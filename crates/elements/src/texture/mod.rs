@@ -1,0 +1,142 @@
+//! Values that vary over surfaces.
+
+mod constant;
+
+use std::fmt::Debug;
+
+use aureole_desc::Attribute;
+use aureole_math::{Arena, Id, Point2, Point3, Vector2};
+use aureole_spectrum::{Spectrum, Wavelengths};
+
+pub use constant::Constant;
+
+/// Where on a triangle mesh a texture is evaluated, for textures that read mesh attributes.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshPoint<'a> {
+    /// The mesh's attributes.
+    pub attributes: &'a [Attribute],
+    /// The triangle.
+    pub face: u32,
+    /// Its vertices.
+    pub vertices: [u32; 3],
+    /// Barycentric weights of the three vertices.
+    pub barycentric: [f32; 3],
+}
+
+/// Where a texture is evaluated, and the textures that it may ask in turn.
+#[derive(Clone, Copy, Debug)]
+pub struct TextureContext<'a> {
+    /// All textures of the scene.
+    pub textures: &'a Arena<Texture>,
+    /// What the lanes of the result mean.
+    pub wavelengths: Wavelengths,
+    /// Surface parameters; v = 0 is the bottom of an image.
+    pub uv: Point2,
+    /// World position.
+    pub p: Point3,
+    /// The place on the mesh, if the surface is one.
+    pub mesh: Option<MeshPoint<'a>>,
+}
+
+impl<'a> TextureContext<'a> {
+    /// A context that knows nothing but uv, for lights and tests.
+    pub fn at_uv(textures: &'a Arena<Texture>, wavelengths: Wavelengths, uv: Point2) -> Self {
+        Self { textures, wavelengths, uv, p: Point3::ORIGIN, mesh: None }
+    }
+
+    /// The value of a texture here.
+    #[inline]
+    pub fn spectrum(&self, texture: Id<Texture>) -> Spectrum {
+        self.textures[texture].eval(self)
+    }
+
+    /// The value of a texture of numbers here: the first lane.
+    #[inline]
+    pub fn float(&self, texture: Id<Texture>) -> f32 {
+        self.textures[texture].eval_float(self)
+    }
+
+    /// The derivative of a texture of numbers by u and v.
+    pub fn gradient(&self, texture: Id<Texture>) -> Vector2 {
+        self.textures[texture].gradient(self)
+    }
+}
+
+/// What every texture can do.
+pub trait TextureOps: Debug + Send + Sync {
+    /// The value at a point.
+    fn eval(&self, at: &TextureContext<'_>) -> Spectrum;
+
+    /// The value as one number: for coloured textures the luminance.
+    fn eval_float(&self, at: &TextureContext<'_>) -> f32 {
+        let value = self.eval(at);
+        aureole_spectrum::luminance(value.rgb())
+    }
+
+    /// The derivative of [`eval_float`](Self::eval_float) by u and v; by central differences unless a texture knows better.
+    fn gradient(&self, at: &TextureContext<'_>) -> Vector2 {
+        const STEP: f32 = 1.0 / 4096.0;
+        let value = |du: f32, dv: f32| {
+            let uv = Point2::new(at.uv.x + du, at.uv.y + dv);
+            self.eval_float(&TextureContext { uv, ..*at })
+        };
+        Vector2::new(
+            (value(STEP, 0.0) - value(-STEP, 0.0)) / (2.0 * STEP),
+            (value(0.0, STEP) - value(0.0, -STEP)) / (2.0 * STEP),
+        )
+    }
+
+    /// An estimate of the mean over the unit square, for choosing among lights and lobes.
+    fn mean(&self, textures: &Arena<Texture>) -> Spectrum;
+
+    /// Texels across and down, for textures made of texels.
+    fn resolution(&self) -> Option<[u32; 2]> {
+        None
+    }
+
+    /// Whether the value is the same everywhere.
+    fn is_constant(&self) -> bool {
+        false
+    }
+}
+
+registry! {
+    ($)
+    /// Any built-in texture.
+    Texture: TextureOps, match with each_texture;
+    constant::Constant as Constant = "constant",
+}
+
+impl Texture {
+    /// The value at a point.
+    #[inline]
+    pub fn eval(&self, at: &TextureContext<'_>) -> Spectrum {
+        each_texture!(self, t => t.eval(at))
+    }
+
+    /// The value as one number.
+    #[inline]
+    pub fn eval_float(&self, at: &TextureContext<'_>) -> f32 {
+        each_texture!(self, t => t.eval_float(at))
+    }
+
+    /// The derivative of [`eval_float`](Self::eval_float) by u and v.
+    pub fn gradient(&self, at: &TextureContext<'_>) -> Vector2 {
+        each_texture!(self, t => t.gradient(at))
+    }
+
+    /// An estimate of the mean over the unit square.
+    pub fn mean(&self, textures: &Arena<Texture>) -> Spectrum {
+        each_texture!(self, t => t.mean(textures))
+    }
+
+    /// Texels across and down, for textures made of texels.
+    pub fn resolution(&self) -> Option<[u32; 2]> {
+        each_texture!(self, t => t.resolution())
+    }
+
+    /// Whether the value is the same everywhere.
+    pub fn is_constant(&self) -> bool {
+        each_texture!(self, t => t.is_constant())
+    }
+}
