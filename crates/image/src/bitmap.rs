@@ -1,53 +1,30 @@
 //! Images as textures read them: compact texels, decoded on the fly.
 
-use std::sync::LazyLock;
+use exr::prelude::f16;
 
-use aureole_spectrum::srgb_to_linear;
+use crate::encoding::{ByteTable, Encoding, WordTable, byte_table, word_table};
+use crate::raster::{Raster, Texels};
 
-/// How stored numbers become linear ones.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Encoding {
-    /// sRGB for whole-number formats, linear for floating-point ones.
-    #[default]
-    Auto,
-    /// The sRGB transfer curve.
-    Srgb,
-    /// Already linear.
-    Linear,
-    /// A power.
-    Gamma(f32),
-}
-
-impl Encoding {
-    fn decode(self, x: f32, is_integer: bool) -> f32 {
-        match self {
-            Self::Auto if is_integer => srgb_to_linear(x),
-            Self::Srgb => srgb_to_linear(x),
-            Self::Gamma(g) => x.max(0.0).powf(g),
-            Self::Auto | Self::Linear => x,
-        }
-    }
-}
-
-static SRGB_TABLE: LazyLock<[f32; 256]> =
-    LazyLock::new(|| std::array::from_fn(|i| srgb_to_linear(i as f32 / 255.0)));
-
-/// Texels, as small as their source allows.
+/// Stored texels with what turns them into linear numbers.
 #[derive(Clone, Debug)]
-enum Texels {
-    /// Eight bits with a table per channel kind: colours first, alpha always linear.
-    Bytes { data: Vec<u8>, table: Box<[f32; 256]> },
-    /// Linear floats.
+enum Store {
+    Bytes { data: Vec<u8>, table: ByteTable },
+    Words { data: Vec<u16>, table: WordTable },
+    Halves(Vec<f16>),
     Floats(Vec<f32>),
 }
 
-/// A picture for textures: 1 (grey), 2 (grey, alpha), 3 or 4 channels; rows from top to bottom.
+/// A picture for textures, kept as small as its file: bytes, 16-bit words, half floats or floats.
+///
+/// It has 1 (grey), 2 (grey, alpha), 3 or 4 channels; rows run from top to bottom. Alpha is never multiplied in by
+/// this type. Values that are not finite are taken as zero and counted.
 #[derive(Clone, Debug)]
 pub struct Bitmap {
     width: usize,
     height: usize,
     channels: usize,
-    texels: Texels,
+    non_finite: usize,
+    store: Store,
 }
 
 impl Bitmap {
@@ -59,42 +36,73 @@ impl Bitmap {
         data: Vec<u8>,
         encoding: Encoding,
     ) -> Option<Self> {
-        let table = match encoding {
-            Encoding::Auto | Encoding::Srgb => Box::new(*SRGB_TABLE),
-            other => Box::new(std::array::from_fn(|i| other.decode(i as f32 / 255.0, true))),
-        };
-        Self::checked(width, height, channels, data.len(), Texels::Bytes { data, table })
+        Self::checked(width, height, channels, Texels::Bytes(data), encoding)
     }
 
-    /// From floats that need decoding when they came from whole numbers; `None` when the lengths do not match.
+    /// From 16-bit words; `None` when the lengths do not match.
+    pub fn from_words(
+        width: usize,
+        height: usize,
+        channels: usize,
+        data: Vec<u16>,
+        encoding: Encoding,
+    ) -> Option<Self> {
+        Self::checked(width, height, channels, Texels::Words(data), encoding)
+    }
+
+    /// From floats; `None` when the lengths do not match.
     pub fn from_floats(
         width: usize,
         height: usize,
         channels: usize,
-        mut data: Vec<f32>,
+        data: Vec<f32>,
         encoding: Encoding,
-        is_integer: bool,
     ) -> Option<Self> {
-        let has_alpha = channels.is_multiple_of(2);
-        for (i, value) in data.iter_mut().enumerate() {
-            let is_alpha = has_alpha && i % channels == channels - 1;
-            *value = if is_alpha { *value } else { encoding.decode(*value, is_integer) };
-            if !value.is_finite() {
-                *value = 0.0;
-            }
-        }
-        Self::checked(width, height, channels, data.len(), Texels::Floats(data))
+        Self::checked(width, height, channels, Texels::Floats(data), encoding)
     }
 
-    fn checked(width: usize, height: usize, channels: usize, len: usize, texels: Texels) -> Option<Self> {
-        let size = width.checked_mul(height)?.checked_mul(channels)?;
-        let usable = size == len && size > 0 && (1..=4).contains(&channels);
-        usable.then_some(Self { width, height, channels, texels })
-    }
-
-    /// One texel of one value, to stand in for a picture that cannot be read.
+    /// One texel of one colour, to stand in for a picture that cannot be read.
     pub fn placeholder(rgb: [f32; 3]) -> Self {
-        Self { width: 1, height: 1, channels: 3, texels: Texels::Floats(rgb.to_vec()) }
+        Self { width: 1, height: 1, channels: 3, non_finite: 0, store: Store::Floats(rgb.to_vec()) }
+    }
+
+    /// The picture among a file's channels.
+    pub(crate) fn from_raster(raster: Raster, encoding: Encoding) -> Option<Self> {
+        let picture = raster.picture_channels();
+        let texels = raster.texels.pick(raster.channels.len(), &picture);
+        Self::checked(raster.width, raster.height, picture.len(), texels, encoding)
+    }
+
+    fn checked(
+        width: usize,
+        height: usize,
+        channels: usize,
+        texels: Texels,
+        encoding: Encoding,
+    ) -> Option<Self> {
+        let size = width.checked_mul(height)?.checked_mul(channels)?;
+        if size == 0 || size != texels.len() || !(1..=4).contains(&channels) {
+            return None;
+        }
+        let encoding = encoding.resolve(texels.is_integer());
+        let mut non_finite = 0;
+        let store = match texels {
+            Texels::Bytes(data) => Store::Bytes { data, table: byte_table(encoding) },
+            Texels::Words(data) => Store::Words { data, table: word_table(encoding) },
+            Texels::Halves(mut data) if encoding == Encoding::Linear => {
+                data.iter_mut().filter(|x| !x.is_finite()).for_each(|x| {
+                    *x = f16::ZERO;
+                    non_finite += 1;
+                });
+                Store::Halves(data)
+            }
+            Texels::Halves(data) => {
+                let floats = data.into_iter().map(f16::to_f32).collect();
+                Store::Floats(linear_floats(floats, channels, encoding, &mut non_finite))
+            }
+            Texels::Floats(data) => Store::Floats(linear_floats(data, channels, encoding, &mut non_finite)),
+        };
+        Some(Self { width, height, channels, non_finite, store })
     }
 
     /// Texels across.
@@ -107,45 +115,97 @@ impl Bitmap {
         self.height
     }
 
-    /// Values per texel.
+    /// Values per texel: 1 (grey), 2 (grey, alpha), 3 or 4.
     pub fn channels(&self) -> usize {
         self.channels
     }
 
+    /// Whether texels have an opacity.
+    pub fn has_alpha(&self) -> bool {
+        self.channels.is_multiple_of(2)
+    }
+
+    /// Whether texels have no colour.
+    pub fn is_grey(&self) -> bool {
+        self.channels < 3
+    }
+
+    /// How many stored values were NaN or infinite and are taken as zero.
+    pub fn non_finite(&self) -> usize {
+        self.non_finite
+    }
+
     /// Bytes that the texels take.
     pub fn memory(&self) -> usize {
-        match &self.texels {
-            Texels::Bytes { data, .. } => data.len(),
-            Texels::Floats(data) => data.len() * 4,
+        match &self.store {
+            Store::Bytes { data, .. } => data.len(),
+            Store::Words { data, .. } => data.len() * 2,
+            Store::Halves(data) => data.len() * 2,
+            Store::Floats(data) => data.len() * 4,
+        }
+    }
+
+    /// The linear red, green, blue and alpha of a texel; grey is repeated, a missing alpha is one.
+    ///
+    /// `x` < width and `y` < height, counted from the top left; beyond them it panics.
+    #[inline]
+    pub fn texel(&self, x: usize, y: usize) -> [f32; 4] {
+        let start = (y * self.width + x) * self.channels;
+        let range = start..start + self.channels;
+        match &self.store {
+            Store::Bytes { data, table } => {
+                spread(&data[range], |v| table[usize::from(v)], |v| f32::from(v) * (1.0 / 255.0))
+            }
+            Store::Words { data, table } => {
+                spread(&data[range], |v| table[usize::from(v)], |v| f32::from(v) * (1.0 / 65535.0))
+            }
+            Store::Halves(data) => spread(&data[range], f16::to_f32, f16::to_f32),
+            Store::Floats(data) => spread(&data[range], |v| v, |v| v),
         }
     }
 
     /// The linear colour of a texel; grey is repeated.
     #[inline]
     pub fn rgb(&self, x: usize, y: usize) -> [f32; 3] {
-        let start = (y * self.width + x) * self.channels;
-        match &self.texels {
-            Texels::Bytes { data, table } if self.channels >= 3 => {
-                [0, 1, 2].map(|c| table[data[start + c] as usize])
-            }
-            Texels::Bytes { data, table } => [table[data[start] as usize]; 3],
-            Texels::Floats(data) if self.channels >= 3 => [0, 1, 2].map(|c| data[start + c]),
-            Texels::Floats(data) => [data[start]; 3],
-        }
+        let [r, g, b, _] = self.texel(x, y);
+        [r, g, b]
     }
 
     /// The opacity of a texel; one without an alpha channel.
     #[inline]
     pub fn alpha(&self, x: usize, y: usize) -> f32 {
-        if !self.channels.is_multiple_of(2) {
-            return 1.0;
-        }
-        let last = (y * self.width + x + 1) * self.channels - 1;
-        match &self.texels {
-            Texels::Bytes { data, .. } => f32::from(data[last]) / 255.0,
-            Texels::Floats(data) => data[last],
+        if self.has_alpha() { self.texel(x, y)[3] } else { 1.0 }
+    }
+}
+
+/// A stored texel of one to four values as red, green, blue, alpha.
+#[inline(always)]
+fn spread<T: Copy>(texel: &[T], color: impl Fn(T) -> f32, alpha: impl Fn(T) -> f32) -> [f32; 4] {
+    match *texel {
+        [r, g, b] => [color(r), color(g), color(b), 1.0],
+        [r, g, b, a] => [color(r), color(g), color(b), alpha(a)],
+        [grey] => [color(grey), color(grey), color(grey), 1.0],
+        [grey, a] => [color(grey), color(grey), color(grey), alpha(a)],
+        _ => [0.0; 4],
+    }
+}
+
+/// Decodes the colours (not the alpha) of float texels and clears what is not finite.
+fn linear_floats(
+    mut data: Vec<f32>,
+    channels: usize,
+    encoding: Encoding,
+    non_finite: &mut usize,
+) -> Vec<f32> {
+    let colors = if channels.is_multiple_of(2) { channels - 1 } else { channels };
+    for texel in data.chunks_exact_mut(channels) {
+        texel[..colors].iter_mut().for_each(|x| *x = encoding.decode(*x));
+        for x in texel.iter_mut().filter(|x| !x.is_finite()) {
+            *x = 0.0;
+            *non_finite += 1;
         }
     }
+    data
 }
 
 #[cfg(test)]
@@ -161,5 +221,33 @@ mod tests {
         assert!((raw.rgb(0, 0)[1] - 128.0 / 255.0).abs() < 1e-6);
         assert!((srgb.alpha(0, 0) - 64.0 / 255.0).abs() < 1e-6);
         assert!(Bitmap::from_bytes(2, 2, 3, vec![0; 3], Encoding::Auto).is_none());
+    }
+
+    #[test]
+    fn every_store_and_channel_count_agrees() {
+        for channels in 1..=4 {
+            let bytes: Vec<u8> = (0..6 * channels).map(|i| (i * 11) as u8).collect();
+            let words = bytes.iter().map(|&x| u16::from(x) * 257).collect();
+            let floats = bytes.iter().map(|&x| f32::from(x) / 255.0).collect();
+            for encoding in [Encoding::Srgb, Encoding::Linear, Encoding::Gamma(1.8)] {
+                let a = Bitmap::from_bytes(3, 2, channels, bytes.clone(), encoding).unwrap();
+                let b = Bitmap::from_words(3, 2, channels, Vec::clone(&words), encoding).unwrap();
+                let c = Bitmap::from_floats(3, 2, channels, Vec::clone(&floats), encoding).unwrap();
+                for (x, y) in [(0, 0), (2, 0), (1, 1), (2, 1)] {
+                    for (i, value) in a.texel(x, y).into_iter().enumerate() {
+                        assert!((value - b.texel(x, y)[i]).abs() < 1e-6);
+                        assert!((value - c.texel(x, y)[i]).abs() < 1e-6);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn texels_that_are_not_finite_are_counted() {
+        let data = vec![f32::NAN, 1.0, f32::INFINITY];
+        let bitmap = Bitmap::from_floats(1, 1, 3, data, Encoding::Auto).unwrap();
+        assert_eq!(bitmap.texel(0, 0), [0.0, 1.0, 0.0, 1.0]);
+        assert_eq!(bitmap.non_finite(), 2);
     }
 }

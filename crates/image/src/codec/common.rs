@@ -1,123 +1,108 @@
-//! The formats that the `image` crate reads and writes: PNG, JPEG, PNM, HDR, TGA, BMP, TIFF, WebP.
+//! The formats that the `image` crate knows.
 
-use std::io::{Cursor, Seek, Write};
-use std::path::Path;
+use std::io::Cursor;
 
-use image::codecs::hdr::HdrEncoder;
-use image::codecs::jpeg::JpegEncoder;
-use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageReader, Limits, Rgb};
+use ::image::codecs::{hdr::HdrEncoder, jpeg::JpegEncoder, png::PngEncoder};
+use ::image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader, Rgb};
 
-use crate::{Bitmap, Encoding, Format, Image, ImageError, ImageLimits, ToneMapping};
+use super::{BitDepth, WriteOptions};
+use crate::error::Fault;
+use crate::raster::{Raster, Texels};
+use crate::tone::Alpha;
+use crate::{Image, ImageLimits};
 
-const JPEG_QUALITY: u8 = 95;
+/// A file of some size cannot hold more pixels than the best of the compressions (deflate, 1032 to one, of single bits) allows.
+const MAX_PIXELS_PER_BYTE: u64 = 1032 * 8;
 
-pub(super) fn write(
-    image: &Image,
-    format: Format,
-    tone: &ToneMapping,
-    out: &mut (impl Write + Seek),
-) -> Result<(), ImageError> {
-    let fail = |error: image::ImageError| ImageError::Encode { message: error.to_string() };
-    let size = |n: usize| {
-        u32::try_from(n).map_err(|_| ImageError::Encode { message: format!("{n} pixels are too many") })
+fn decode(bytes: &[u8], limits: &ImageLimits, format: ImageFormat) -> Result<Raster, Fault> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut inner = ::image::Limits::default();
+    inner.max_alloc = Some(limits.max_bytes);
+    reader.limits(inner);
+    let decoder = reader.into_decoder().map_err(Fault::content)?;
+    let (width, height) = decoder.dimensions();
+    let bytes_per_pixel = u64::from(decoder.color_type().bytes_per_pixel());
+    limits.check(width.into(), height.into(), 1, bytes_per_pixel)?;
+    let most = MAX_PIXELS_PER_BYTE.saturating_mul(bytes.len() as u64);
+    // WebP can paint a whole picture with a few bits.
+    if format != ImageFormat::WebP && u64::from(width) * u64::from(height) > most {
+        return Err(Fault::content(format!("{} bytes cannot hold {width} x {height} pixels", bytes.len())));
+    }
+    let picture = DynamicImage::from_decoder(decoder).map_err(Fault::content)?;
+    let channels = usize::from(picture.color().channel_count());
+    let texels = match picture {
+        DynamicImage::ImageLuma8(buffer) => Texels::Bytes(buffer.into_raw()),
+        DynamicImage::ImageLumaA8(buffer) => Texels::Bytes(buffer.into_raw()),
+        DynamicImage::ImageRgb8(buffer) => Texels::Bytes(buffer.into_raw()),
+        DynamicImage::ImageRgba8(buffer) => Texels::Bytes(buffer.into_raw()),
+        DynamicImage::ImageLuma16(buffer) => Texels::Words(buffer.into_raw()),
+        DynamicImage::ImageLumaA16(buffer) => Texels::Words(buffer.into_raw()),
+        DynamicImage::ImageRgb16(buffer) => Texels::Words(buffer.into_raw()),
+        DynamicImage::ImageRgba16(buffer) => Texels::Words(buffer.into_raw()),
+        DynamicImage::ImageRgb32F(buffer) => Texels::Floats(buffer.into_raw()),
+        DynamicImage::ImageRgba32F(buffer) => Texels::Floats(buffer.into_raw()),
+        other => return Err(Fault::content(format!("pixels of type {:?} are not supported", other.color()))),
     };
-    let (width, height) = (size(image.width())?, size(image.height())?);
-    match format {
-        Format::Hdr => {
-            let gain = tone.exposure.exp2();
-            let pixels: Vec<Rgb<f32>> =
-                image.to_rgb().iter().map(|rgb| Rgb(rgb.map(|x| (x * gain).max(0.0)))).collect();
-            HdrEncoder::new(out).encode(&pixels, image.width(), image.height()).map_err(fail)
-        }
-        Format::Jpeg => JpegEncoder::new_with_quality(out, JPEG_QUALITY)
-            .write_image(&tone.to_bytes(image), width, height, ExtendedColorType::Rgb8)
-            .map_err(fail),
-        _ => {
-            let format =
-                if format == Format::Ppm { image::ImageFormat::Pnm } else { image::ImageFormat::Png };
-            image::write_buffer_with_format(
-                out,
-                &tone.to_bytes(image),
-                width,
-                height,
-                ExtendedColorType::Rgb8,
-                format,
-            )
-            .map_err(fail)
-        }
-    }
+    Ok(Raster::picture(width as usize, height as usize, channels, texels))
 }
 
-pub(super) fn read(
-    path: &Path,
-    bytes: &[u8],
-    encoding: Encoding,
-    limits: &ImageLimits,
-) -> Result<Bitmap, ImageError> {
-    let bad = |message: String| ImageError::Decode { path: path.to_owned(), message };
-    let open = || -> Result<_, ImageError> {
-        let mut reader =
-            ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| bad(e.to_string()))?;
-        if reader.format().is_none()
-            && let Ok(format) = image::ImageFormat::from_path(path)
-        {
-            reader.set_format(format); // TGA has no magic number
-        }
-        Ok(reader)
+/// Makes the decoder of one of the crate's formats.
+macro_rules! decoders {
+    ($($name:ident: $format:ident),* $(,)?) => {
+        $(pub(super) fn $name(bytes: &[u8], limits: &ImageLimits) -> Result<Raster, Fault> {
+            decode(bytes, limits, ImageFormat::$format)
+        })*
     };
-    let (width, height) = open()?.into_dimensions().map_err(|e| bad(e.to_string()))?;
-    limits.check(width.into(), height.into())?;
-    let mut reader = open()?;
-    let mut allowed = Limits::default();
-    allowed.max_alloc = Some(limits.max_pixels.saturating_mul(16));
-    reader.limits(allowed);
-    let decoded = reader.decode().map_err(|e| bad(e.to_string()))?;
-    to_bitmap(decoded, encoding).ok_or_else(|| bad("it has no pixels".into()))
 }
 
-fn to_bitmap(decoded: DynamicImage, encoding: Encoding) -> Option<Bitmap> {
-    let (width, height) = (decoded.width() as usize, decoded.height() as usize);
-    let channels = usize::from(decoded.color().channel_count());
-    let sixteen = |data: Vec<u16>| data.into_iter().map(|x| f32::from(x) / 65535.0).collect();
-    match decoded {
-        DynamicImage::ImageLuma8(b) => Bitmap::from_bytes(width, height, channels, b.into_raw(), encoding),
-        DynamicImage::ImageLumaA8(b) => Bitmap::from_bytes(width, height, channels, b.into_raw(), encoding),
-        DynamicImage::ImageRgb8(b) => Bitmap::from_bytes(width, height, channels, b.into_raw(), encoding),
-        DynamicImage::ImageRgba8(b) => Bitmap::from_bytes(width, height, channels, b.into_raw(), encoding),
-        DynamicImage::ImageLuma16(b) => {
-            Bitmap::from_floats(width, height, channels, sixteen(b.into_raw()), encoding, true)
-        }
-        DynamicImage::ImageLumaA16(b) => {
-            Bitmap::from_floats(width, height, channels, sixteen(b.into_raw()), encoding, true)
-        }
-        DynamicImage::ImageRgb16(b) => {
-            Bitmap::from_floats(width, height, channels, sixteen(b.into_raw()), encoding, true)
-        }
-        DynamicImage::ImageRgba16(b) => {
-            Bitmap::from_floats(width, height, channels, sixteen(b.into_raw()), encoding, true)
-        }
-        DynamicImage::ImageRgb32F(b) => {
-            Bitmap::from_floats(width, height, channels, b.into_raw(), encoding, false)
-        }
-        DynamicImage::ImageRgba32F(b) => {
-            Bitmap::from_floats(width, height, channels, b.into_raw(), encoding, false)
-        }
-        other => Bitmap::from_bytes(width, height, 4, other.into_rgba8().into_raw(), encoding),
-    }
+decoders! {
+    decode_png: Png, decode_jpeg: Jpeg, decode_hdr: Hdr, decode_pnm: Pnm,
+    decode_bmp: Bmp, decode_tiff: Tiff, decode_webp: WebP, decode_tga: Tga,
 }
 
-pub(super) fn to_image(bitmap: &Bitmap) -> Image {
-    let has_alpha = bitmap.channels().is_multiple_of(2);
-    let names: &[&str] = if has_alpha { &["R", "G", "B", "A"] } else { &["R", "G", "B"] };
-    let mut image = Image::new(bitmap.width(), bitmap.height(), names);
-    for y in 0..bitmap.height() {
-        for x in 0..bitmap.width() {
-            let pixel = image.pixel_mut(x, y);
-            pixel[..3].copy_from_slice(&bitmap.rgb(x, y));
-            if has_alpha {
-                pixel[3] = bitmap.alpha(x, y);
-            }
+/// An image's size as the formats of the past count it.
+fn size(image: &Image) -> Result<(u32, u32), String> {
+    let narrow = |n: usize| u32::try_from(n).map_err(|_| format!("{n} pixels are too many for the format"));
+    Ok((narrow(image.width())?, narrow(image.height())?))
+}
+
+/// PNG, with alpha if the image has it, 8 or 16 bits a value.
+pub(super) fn encode_png(image: &Image, options: &WriteOptions) -> Result<Vec<u8>, String> {
+    let (width, height) = size(image)?;
+    let has_alpha = image.channel("A").is_some();
+    let (bytes, color) = match options.bit_depth {
+        BitDepth::Eight => {
+            let bytes = options.tone.quantise(image, Alpha::Keep, 255.0, |x| x as u8);
+            (bytes, if has_alpha { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 })
         }
-    }
-    image
+        BitDepth::Sixteen => {
+            let words = options.tone.quantise(image, Alpha::Keep, 65535.0, |x| x as u16);
+            let bytes = words.into_iter().flat_map(u16::to_ne_bytes).collect();
+            (bytes, if has_alpha { ExtendedColorType::Rgba16 } else { ExtendedColorType::Rgb16 })
+        }
+    };
+    let mut out = Vec::new();
+    PngEncoder::new(&mut out).write_image(&bytes, width, height, color).map_err(|e| e.to_string())?;
+    Ok(out)
+}
+
+/// JPEG; alpha is dropped, the picture lies over black.
+pub(super) fn encode_jpeg(image: &Image, options: &WriteOptions) -> Result<Vec<u8>, String> {
+    let (width, height) = size(image)?;
+    let bytes = options.tone.to_bytes(image);
+    let mut out = Vec::new();
+    JpegEncoder::new_with_quality(&mut out, options.quality.clamp(1, 100))
+        .write_image(&bytes, width, height, ExtendedColorType::Rgb8)
+        .map_err(|e| e.to_string())?;
+    Ok(out)
+}
+
+/// Radiance's shared exponent; negative and non-finite values, which it cannot hold, become zero.
+pub(super) fn encode_hdr(image: &Image, _: &WriteOptions) -> Result<Vec<u8>, String> {
+    size(image)?;
+    let clean = |x: f32| if x.is_finite() { x.max(0.0) } else { 0.0 };
+    let pixels: Vec<Rgb<f32>> = image.to_rgb().into_iter().map(|rgb| Rgb(rgb.map(clean))).collect();
+    let mut out = Vec::new();
+    HdrEncoder::new(&mut out).encode(&pixels, image.width(), image.height()).map_err(|e| e.to_string())?;
+    Ok(out)
 }

@@ -1,56 +1,84 @@
-//! Portable float maps: a header of three words and rows from bottom to top (P. Debevec's definition).
+//! Portable float maps: `PF` (colour) or `Pf` (grey), the size, a scale whose sign tells the byte order, and rows of floats
+//! from the bottom to the top.
+//!
+//! [Debevec] P. Debevec, "PFM Portable FloatMap Image Format".
 
-use std::io::Write;
-use std::path::Path;
+use super::WriteOptions;
+use crate::error::Fault;
+use crate::raster::{Raster, Texels};
+use crate::{Image, ImageLimits};
 
-use crate::{Image, ImageError, ImageLimits};
-
-pub(super) fn write(image: &Image, out: &mut impl Write) -> Result<(), ImageError> {
-    let fail = |error: std::io::Error| ImageError::Encode { message: error.to_string() };
-    write!(out, "PF\n{} {}\n-1.0\n", image.width(), image.height()).map_err(fail)?;
-    let rgb = image.to_rgb();
-    for row in rgb.chunks_exact(image.width().max(1)).rev() {
-        let bytes: Vec<u8> = row.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
-        out.write_all(&bytes).map_err(fail)?;
-    }
-    Ok(())
+/// A word of the header and what follows the one space after it.
+fn word(bytes: &[u8]) -> Option<(&str, &[u8])> {
+    let start = bytes.iter().position(|b| !b.is_ascii_whitespace())?;
+    let end = start + bytes[start..].iter().position(u8::is_ascii_whitespace)?;
+    Some((std::str::from_utf8(&bytes[start..end]).ok()?, &bytes[end + 1..]))
 }
 
-pub(super) fn read(path: &Path, bytes: &[u8], limits: &ImageLimits) -> Result<Image, ImageError> {
-    let bad = |message: &str| ImageError::Decode { path: path.to_owned(), message: message.to_owned() };
-    let mut rest = bytes;
-    let kind = word(&mut rest).ok_or_else(|| bad("the header ends early"))?;
-    let width: u64 = number(&mut rest).ok_or_else(|| bad("the width is not a number"))?;
-    let height: u64 = number(&mut rest).ok_or_else(|| bad("the height is not a number"))?;
-    let scale: f32 = number(&mut rest).ok_or_else(|| bad("the scale is not a number"))?;
-    limits.check(width, height)?;
-    let (width, height) = (width as usize, height as usize);
-    let channels = if kind == "PF" { 3 } else { 1 };
-    if rest.len() / 4 / channels < width * height || width * height == 0 {
-        return Err(bad("it has fewer pixels than its header says"));
-    }
-    let decode = |b: [u8; 4]| if scale < 0.0 { f32::from_le_bytes(b) } else { f32::from_be_bytes(b) };
-    let names: &[&str] = if channels == 3 { &["R", "G", "B"] } else { &["Y"] };
-    let mut image = Image::new(width, height, names);
-    let row_length = width * channels;
-    for (y, row) in rest.chunks_exact(row_length * 4).take(height).enumerate() {
-        let start = (height - 1 - y) * row_length;
-        let target = &mut image.data_mut()[start..start + row_length];
-        for (value, four) in target.iter_mut().zip(row.chunks_exact(4)) {
-            *value = decode([four[0], four[1], four[2], four[3]]);
+/// The header's magic, width, height, scale, and the bytes after it.
+fn header(bytes: &[u8]) -> Option<(&str, u64, u64, f32, &[u8])> {
+    let (magic, rest) = word(bytes)?;
+    let (width, rest) = word(rest)?;
+    let (height, rest) = word(rest)?;
+    let (scale, rest) = word(rest)?;
+    Some((magic, width.parse().ok()?, height.parse().ok()?, scale.parse().ok()?, rest))
+}
+
+pub(super) fn decode(bytes: &[u8], limits: &ImageLimits) -> Result<Raster, Fault> {
+    let (magic, width, height, scale, body) =
+        header(bytes).ok_or_else(|| Fault::content("its PFM header is broken"))?;
+    let channels = match magic {
+        "PF" => 3,
+        "Pf" => 1,
+        _ => return Err(Fault::content(format!("{magic:?} is not a kind of PFM"))),
+    };
+    let size = limits.check(width, height, channels as u64, 4)?;
+    let body = body
+        .get(..size * 4)
+        .ok_or_else(|| Fault::content(format!("it ends after {} of {} bytes", body.len(), size * 4)))?;
+    let read = if scale < 0.0 { f32::from_le_bytes } else { f32::from_be_bytes };
+    let row = width as usize * channels;
+    let rows = body.chunks_exact(row * 4).rev();
+    let data = rows.flat_map(|row| row.as_chunks().0.iter().map(|&value| read(value))).collect();
+    Ok(Raster::picture(width as usize, height as usize, channels, Texels::Floats(data)))
+}
+
+/// Grey images as `Pf`, others as `PF`; alpha and layers are dropped.
+pub(super) fn encode(image: &Image, _: &WriteOptions) -> Result<Vec<u8>, String> {
+    let magic = if image.is_grey() { "Pf" } else { "PF" };
+    let mut out = format!("{magic}\n{} {}\n-1.0\n", image.width(), image.height()).into_bytes();
+    let colors = image.rgb_channels();
+    let kept = if image.is_grey() { &colors[..1] } else { &colors[..] };
+    for y in (0..image.height()).rev() {
+        for x in 0..image.width() {
+            let pixel = image.pixel(x, y);
+            out.extend(kept.iter().flat_map(|&c| pixel[c].to_le_bytes()));
         }
     }
-    Ok(image)
+    Ok(out)
 }
 
-/// The next word and the one white-space character behind it.
-fn word<'a>(rest: &mut &'a [u8]) -> Option<&'a str> {
-    let end = rest.iter().take(64).position(u8::is_ascii_whitespace)?;
-    let (word, tail) = rest.split_at(end);
-    *rest = &tail[1..];
-    std::str::from_utf8(word).ok()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn number<T: std::str::FromStr>(rest: &mut &[u8]) -> Option<T> {
-    word(rest)?.parse().ok()
+    #[test]
+    fn byte_order_and_row_order_are_understood() {
+        let mut bytes = b"Pf\n2 2\n1.0\n".to_vec();
+        for value in [1.0_f32, 2.0, 3.0, 4.0] {
+            bytes.extend(value.to_be_bytes());
+        }
+        let image = decode(&bytes, &ImageLimits::default()).unwrap().into_image().unwrap();
+        assert_eq!(image.data(), [3.0, 4.0, 1.0, 2.0]);
+        assert!(image.is_grey());
+    }
+
+    #[test]
+    fn broken_headers_are_errors() {
+        for text in ["", "PF", "PF\n2 2\n", "PF\n-2 2\n1\n", "PF\n2 2\nx\n", "P5\n1 1\n1\n...."] {
+            assert!(decode(text.as_bytes(), &ImageLimits::default()).is_err(), "{text:?}");
+        }
+        let huge = b"PF\n99999999999 99999999999\n-1\n";
+        assert!(matches!(decode(huge, &ImageLimits::default()), Err(Fault::TooLarge { .. })));
+    }
 }
