@@ -12,11 +12,15 @@
 //! ```
 
 mod color;
+mod data;
 mod source;
 mod spectrum;
 mod wavelengths;
 
 pub use color::{luminance, srgb_from_linear, srgb_from_xyz, srgb_to_linear, xyz_from_srgb};
+pub use data::{
+    Metal, blackbody, dielectric_ior, dielectrics, glass, metal, metals, named_spectrum, spectrum_names,
+};
 pub use source::{PreparedSpectrum, SpectrumRole, SpectrumSource, Tabulated};
 pub use spectrum::Spectrum;
 pub use wavelengths::{ColorMode, Wavelengths};

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::{Spectrum, Wavelengths};
+use crate::data::cie;
+use crate::{Spectrum, Wavelengths, srgb_from_xyz};
 
 /// A spectrum given as samples over wavelength, linear in between, zero outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +34,8 @@ pub enum SpectrumRole {
     Illuminant,
     /// A material constant such as an index of refraction: seen under D65, not clamped.
     Unbounded,
+    /// A measured index of refraction, by name: weighted evenly, not clamped.
+    Index,
 }
 
 /// A spectrum ready for evaluation.
@@ -72,11 +75,32 @@ impl Tabulated {
         self.values[i - 1] * (1.0 - t) + self.values[i] * t
     }
 
+    /// CIE XYZ: the integral against the colour matching functions, over that of ȳ; under D65 when `lit`.
+    pub fn to_xyz(&self, lit: bool) -> [f32; 3] {
+        let (mut xyz, mut norm) = ([0.0_f64; 3], 0.0_f64);
+        for pair in cie().windows(2) {
+            // A midpoint every nanometre: tables may be finer than the CIE's.
+            for step in 0..5 {
+                let t = (step as f32 + 0.5) / 5.0;
+                let lerp = |a: f32, b: f32| a + (b - a) * t;
+                let light = if lit { lerp(pair[0].d65, pair[1].d65) } else { 1.0 };
+                let value = self.eval(lerp(pair[0].lambda, pair[1].lambda)) * light;
+                for c in 0..3 {
+                    xyz[c] += f64::from(lerp(pair[0].xyz[c], pair[1].xyz[c]) * value);
+                }
+                norm += f64::from(lerp(pair[0].xyz[1], pair[1].xyz[1]) * light);
+            }
+        }
+        xyz.map(|x| (x / norm) as f32)
+    }
+
     /// The linear Rec. 709 colour of the table in its role.
-    pub fn to_rgb(&self, _role: SpectrumRole) -> [f32; 3] {
-        // Integration against the colour matching functions is in the data module.
-        let mean = self.values.iter().sum::<f32>() / self.values.len().max(1) as f32;
-        [mean; 3]
+    pub fn to_rgb(&self, role: SpectrumRole) -> [f32; 3] {
+        let rgb = srgb_from_xyz(self.to_xyz(matches!(role, SpectrumRole::Albedo | SpectrumRole::Unbounded)));
+        match role {
+            SpectrumRole::Albedo => rgb.map(|x| x.clamp(0.0, 1.0)),
+            _ => rgb.map(|x| x.max(0.0)),
+        }
     }
 }
 

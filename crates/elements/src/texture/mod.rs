@@ -1,6 +1,13 @@
 //! Values that vary over surfaces.
 
+mod bilerp;
+mod bitmap;
+mod checkerboard;
 mod constant;
+mod mesh_attribute;
+mod mix;
+mod scale;
+mod uv_map;
 
 use std::fmt::Debug;
 
@@ -8,7 +15,14 @@ use aureole_desc::Attribute;
 use aureole_math::{Arena, Id, Point2, Point3, Vector2};
 use aureole_spectrum::{Spectrum, Wavelengths};
 
+pub use bilerp::Bilerp;
+pub use bitmap::BitmapTexture;
+pub use checkerboard::Checkerboard;
 pub use constant::Constant;
+pub use mesh_attribute::MeshAttribute;
+pub use mix::Mix;
+pub use scale::Scale;
+pub use uv_map::UvMap;
 
 /// Where on a triangle mesh a texture is evaluated, for textures that read mesh attributes.
 #[derive(Clone, Copy, Debug)]
@@ -105,6 +119,12 @@ registry! {
     /// Any built-in texture.
     Texture: TextureOps, match with each_texture;
     constant::Constant as Constant = "constant",
+    bitmap::BitmapTexture as Bitmap = "bitmap",
+    checkerboard::Checkerboard as Checkerboard = "checkerboard",
+    scale::Scale as Scale = "scale",
+    mix::Mix as Mix = "mix",
+    bilerp::Bilerp as Bilerp = "bilerp",
+    mesh_attribute::MeshAttribute as MeshAttribute = "mesh_attribute",
 }
 
 impl Texture {

@@ -1,0 +1,145 @@
+//! `conductor`: a smooth metal, or a perfect mirror.
+//!
+//! | parameter | type | default | meaning |
+//! |---|---|---|---|
+//! | `material` | string | Cu | a metal's name (`Au`, `Al`, ...), or `none` for a perfect mirror |
+//! | `eta`, `k` | texture | by `material` | complex index of refraction |
+//! | `ext_eta` | float | 1 | index of the medium outside |
+//! | `specular_reflectance` | texture | 1 | factor |
+
+use aureole_desc::{ParamDoc, Params, SceneError};
+use aureole_math::{Id, Point2, Vector3};
+use aureole_spectrum::{Spectrum, SpectrumRole, SpectrumSource, metal, metals};
+
+use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
+use crate::{Element, Resolver, Texture, TextureContext, spectrum_texture};
+
+/// What makes a metal's colour.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Metallic {
+    /// Complex index; none for a perfect mirror.
+    index: Option<[Id<Texture>; 2]>,
+    ext_eta: f32,
+    tint: Id<Texture>,
+}
+
+/// Documentation of the parameters of metals.
+pub(super) const METAL_PARAMS: [ParamDoc; 5] = [
+    ParamDoc { name: "material", ty: "string", default: "Cu", doc: "a metal's name, or `none` for a perfect mirror" },
+    ParamDoc { name: "eta", ty: "texture", default: "by material", doc: "index of refraction, real part" },
+    ParamDoc { name: "k", ty: "texture", default: "by material", doc: "index of refraction, imaginary part" },
+    ParamDoc { name: "ext_eta", ty: "float", default: "1", doc: "index of the medium outside" },
+    ParamDoc { name: "specular_reflectance", ty: "texture", default: "1", doc: "factor" },
+];
+
+impl Metallic {
+    pub(super) fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
+        let tint = spectrum_texture(params, resolver, "specular_reflectance", 1.0, SpectrumRole::Albedo)?;
+        let ext_eta = params.float_in("ext_eta", 1.0, 0.1, 10.0)?;
+        let mut this = Self { index: None, ext_eta, tint };
+        let name = params.try_string("material")?;
+        if name.as_deref() == Some("none") {
+            return Ok(this);
+        }
+        if params.has("eta") || params.has("k") {
+            let mut part = |name, default| spectrum_texture(params, resolver, name, default, SpectrumRole::Unbounded);
+            this.index = Some([part("eta", 0.0)?, part("k", 1.0)?]);
+            return Ok(this);
+        }
+        let name = name.unwrap_or_else(|| "Cu".to_owned());
+        let found = metal(&name).ok_or_else(|| SceneError::UnknownName {
+            what: "metal",
+            name: name.clone(),
+            known: metals().iter().map(|m| m.name.to_owned()).collect(),
+            at: params.span("material"),
+        })?;
+        let mut part = |table: &std::sync::Arc<_>| {
+            resolver.constant(&SpectrumSource::Tabulated(std::sync::Arc::clone(table)), SpectrumRole::Index)
+        };
+        this.index = Some([part(&found.eta), part(&found.k)]);
+        Ok(this)
+    }
+
+    #[inline]
+    pub(super) fn at(&self, at: &TextureContext<'_>) -> Metal {
+        let index = self.index.map(|[eta, k]| [at.spectrum(eta) / self.ext_eta, at.spectrum(k) / self.ext_eta]);
+        Metal { index, tint: at.spectrum(self.tint) }
+    }
+}
+
+/// A metal's index and tint at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Metal {
+    /// Complex index; none for a perfect mirror.
+    pub index: Option<[Spectrum; 2]>,
+    /// Factor.
+    pub tint: Spectrum,
+}
+
+impl Metal {
+    /// Reflectance at a cosine of incidence.
+    #[inline]
+    pub fn reflectance(&self, cos_i: f32) -> Spectrum {
+        match self.index {
+            Some([eta, k]) => fresnel::conductor(cos_i, eta, k) * self.tint,
+            None => self.tint,
+        }
+    }
+}
+
+/// A smooth metal.
+#[derive(Clone, Copy, Debug)]
+pub struct Conductor {
+    metal: Metallic,
+}
+
+impl Element for Conductor {
+    const SUMMARY: &'static str = "A smooth metal, or a perfect mirror.";
+    const PARAMS: &'static [ParamDoc] = &METAL_PARAMS;
+
+    fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
+        Ok(Self { metal: Metallic::from_params(params, resolver)? })
+    }
+}
+
+impl MaterialOps for Conductor {
+    fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
+        out.push(ConductorLobe { metal: self.metal.at(&at.texture) }, weight, at.frame, at.frame.n);
+    }
+}
+
+/// A mirror with a metal's reflectance.
+#[derive(Clone, Copy, Debug)]
+pub struct ConductorLobe {
+    /// The metal.
+    pub metal: Metal,
+}
+
+impl LobeOps for ConductorLobe {
+    fn eval(&self, _: Vector3, _: Vector3, _: TransportMode) -> Spectrum {
+        Spectrum::ZERO
+    }
+
+    #[inline]
+    fn sample(&self, wo: Vector3, _: f32, _: Point2, _: TransportMode) -> Option<LobeSample> {
+        (wo.z > 0.0).then(|| LobeSample {
+            wi: Vector3::new(-wo.x, -wo.y, wo.z),
+            value: self.metal.reflectance(wo.z) / wo.z,
+            pdf_omega: 1.0,
+            flags: LobeFlags::DELTA_REFLECTION,
+            eta: 1.0,
+        })
+    }
+
+    fn pdf_omega(&self, _: Vector3, _: Vector3) -> f32 {
+        0.0
+    }
+
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn albedo(&self, wo: Vector3) -> Spectrum {
+        self.metal.reflectance(wo.z.abs())
+    }
+}

@@ -1,0 +1,126 @@
+//! One term of a BSDF.
+
+use aureole_math::{Point2, Vector3};
+use aureole_spectrum::Spectrum;
+
+use super::{
+    ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, NullLobe, PlasticLobe, RoughConductorLobe,
+    RoughDielectricLobe, RoughPlasticLobe, ThinDielectricLobe,
+};
+
+/// What travels along a path: refraction squeezes radiance, but not importance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TransportMode {
+    /// From the eye towards the lights.
+    #[default]
+    Radiance,
+    /// From the lights towards the eye.
+    Importance,
+}
+
+/// What kind of scattering a sample is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LobeFlags {
+    /// A Dirac distribution: no other direction could have been drawn.
+    pub delta: bool,
+    /// Through the surface.
+    pub transmission: bool,
+}
+
+impl LobeFlags {
+    /// Non-delta reflection.
+    pub const REFLECTION: Self = Self { delta: false, transmission: false };
+    /// Non-delta transmission.
+    pub const TRANSMISSION: Self = Self { delta: false, transmission: true };
+    /// A mirror.
+    pub const DELTA_REFLECTION: Self = Self { delta: true, transmission: false };
+    /// A window.
+    pub const DELTA_TRANSMISSION: Self = Self { delta: true, transmission: true };
+}
+
+/// A direction drawn from a lobe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LobeSample {
+    /// The direction, in the shading frame.
+    pub wi: Vector3,
+    /// The lobe's value, without cosine. For delta lobes the coefficient of the Dirac over |cos θi|.
+    pub value: Spectrum,
+    /// Density per steradian; for delta lobes the probability of this choice.
+    pub pdf_omega: f32,
+    /// The kind of scattering.
+    pub flags: LobeFlags,
+    /// Relative index of refraction along the path: 1 but for refraction.
+    pub eta: f32,
+}
+
+/// What every lobe can do. Directions are unit vectors in the shading frame; both point away from the surface.
+pub trait LobeOps {
+    /// The value for a pair of directions, without cosine. Delta lobes give zero.
+    fn eval(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> Spectrum;
+
+    /// Draws a direction.
+    fn sample(&self, wo: Vector3, uc: f32, u: Point2, mode: TransportMode) -> Option<LobeSample>;
+
+    /// The density of [`sample`](Self::sample) per steradian. Delta lobes give zero.
+    fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32;
+
+    /// Whether the lobe is nothing but Dirac distributions.
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    /// An estimate of how much light is scattered, for albedo images.
+    fn albedo(&self, wo: Vector3) -> Spectrum;
+}
+
+/// Lists the lobes: makes the enum and its static dispatch.
+macro_rules! lobes {
+    ($($Variant:ident($Type:ident)),* $(,)?) => {
+        /// Any lobe: a plain value without references.
+        #[derive(Clone, Copy, Debug)]
+        #[expect(missing_docs, reason = "each is documented at its type")]
+        pub enum Lobe { $($Variant($Type)),* }
+
+        $(impl From<$Type> for Lobe {
+            #[inline]
+            fn from(lobe: $Type) -> Self {
+                Self::$Variant(lobe)
+            }
+        })*
+
+        impl LobeOps for Lobe {
+            #[inline]
+            fn eval(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> Spectrum {
+                match self { $(Self::$Variant(lobe) => lobe.eval(wo, wi, mode)),* }
+            }
+            #[inline]
+            fn sample(&self, wo: Vector3, uc: f32, u: Point2, mode: TransportMode) -> Option<LobeSample> {
+                match self { $(Self::$Variant(lobe) => lobe.sample(wo, uc, u, mode)),* }
+            }
+            #[inline]
+            fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {
+                match self { $(Self::$Variant(lobe) => lobe.pdf_omega(wo, wi)),* }
+            }
+            #[inline]
+            fn is_delta(&self) -> bool {
+                match self { $(Self::$Variant(lobe) => lobe.is_delta()),* }
+            }
+            fn albedo(&self, wo: Vector3) -> Spectrum {
+                match self { $(Self::$Variant(lobe) => lobe.albedo(wo)),* }
+            }
+        }
+    };
+}
+
+lobes! {
+    Diffuse(DiffuseLobe),
+    Conductor(ConductorLobe),
+    RoughConductor(RoughConductorLobe),
+    Dielectric(DielectricLobe),
+    ThinDielectric(ThinDielectricLobe),
+    RoughDielectric(RoughDielectricLobe),
+    Plastic(PlasticLobe),
+    RoughPlastic(RoughPlasticLobe),
+    DiffuseTransmission(DiffuseTransmissionLobe),
+    Null(NullLobe),
+}

@@ -1,0 +1,137 @@
+//! Surface materials and the BSDFs they evaluate to.
+//!
+//! A *material* is a recipe: it names textures and other materials. At a hit it evaluates to a [`Bsdf`], a plain value
+//! on the stack made of a few weighted [`Lobe`]s, which know no textures.
+
+mod blend;
+mod bump;
+mod conductor;
+mod dielectric;
+mod diffuse;
+mod diffuse_transmission;
+pub mod fresnel;
+mod lobe;
+mod mask;
+pub mod microfacet;
+mod normal_map;
+mod null;
+mod plastic;
+mod rough_conductor;
+mod rough_dielectric;
+mod rough_plastic;
+mod stack;
+mod thin_dielectric;
+mod two_sided;
+
+use std::fmt::Debug;
+
+use aureole_desc::{NodeId, Params, SceneError, Span};
+use aureole_math::{Arena, Frame, Id, Vector3};
+
+use crate::{Resolver, TextureContext};
+
+pub use blend::Blend;
+pub use bump::Bump;
+pub use conductor::{Conductor, ConductorLobe};
+pub use dielectric::{Dielectric, DielectricLobe};
+pub use diffuse::{Diffuse, DiffuseLobe};
+pub use diffuse_transmission::{DiffuseTransmission, DiffuseTransmissionLobe};
+pub use lobe::{Lobe, LobeFlags, LobeOps, LobeSample, TransportMode};
+pub use mask::Mask;
+pub use normal_map::NormalMap;
+pub use null::{Null, NullLobe};
+pub use plastic::{Plastic, PlasticLobe};
+pub use rough_conductor::{RoughConductor, RoughConductorLobe};
+pub use rough_dielectric::{RoughDielectric, RoughDielectricLobe};
+pub use rough_plastic::{RoughPlastic, RoughPlasticLobe};
+pub use stack::{Bsdf, BsdfSample};
+pub use thin_dielectric::{ThinDielectric, ThinDielectricLobe};
+pub use two_sided::TwoSided;
+
+/// Where a material is evaluated.
+#[derive(Clone, Copy, Debug)]
+pub struct MaterialContext<'a> {
+    /// What textures need to know.
+    pub texture: TextureContext<'a>,
+    /// All materials of the scene.
+    pub materials: &'a Arena<Material>,
+    /// Shading frame in the world; materials that bend normals hand a bent one to those below them.
+    pub frame: Frame,
+    /// Unit geometric normal in the world.
+    pub ng: Vector3,
+    /// Derivative of position by u.
+    pub dp_du: Vector3,
+    /// Derivative of position by v.
+    pub dp_dv: Vector3,
+    /// Unit direction to the viewer, in the world.
+    pub wo: Vector3,
+}
+
+impl MaterialContext<'_> {
+    /// Evaluates a nested material with a share of the whole.
+    pub fn nested(&self, material: Id<Material>, weight: f32, out: &mut Bsdf) {
+        self.materials[material].evaluate(self, weight, out);
+    }
+}
+
+/// What every material can do.
+pub trait MaterialOps: Debug + Send + Sync {
+    /// Adds the lobes seen at a hit, their weights multiplied by `weight`.
+    fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf);
+}
+
+registry! {
+    ($)
+    /// Any built-in material.
+    Material: MaterialOps, match with each_material;
+    diffuse::Diffuse as Diffuse = "diffuse",
+    conductor::Conductor as Conductor = "conductor",
+    rough_conductor::RoughConductor as RoughConductor = "rough_conductor",
+    dielectric::Dielectric as Dielectric = "dielectric",
+    thin_dielectric::ThinDielectric as ThinDielectric = "thin_dielectric",
+    rough_dielectric::RoughDielectric as RoughDielectric = "rough_dielectric",
+    plastic::Plastic as Plastic = "plastic",
+    rough_plastic::RoughPlastic as RoughPlastic = "rough_plastic",
+    diffuse_transmission::DiffuseTransmission as DiffuseTransmission = "diffuse_transmission",
+    two_sided::TwoSided as TwoSided = "two_sided",
+    mask::Mask as Mask = "mask",
+    blend::Blend as Blend = "blend",
+    null::Null as Null = "null",
+    bump::Bump as Bump = "bump",
+    normal_map::NormalMap as NormalMap = "normal_map",
+}
+
+impl Material {
+    /// Adds the lobes seen at a hit, their weights multiplied by `weight`.
+    #[inline]
+    pub fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
+        each_material!(self, m => m.evaluate(at, weight, out));
+    }
+}
+
+/// A nested material that must be given.
+pub(crate) fn nested_material(
+    params: &mut Params,
+    resolver: &mut dyn Resolver,
+    name: &str,
+    element: &str,
+) -> Result<Id<Material>, SceneError> {
+    match params.try_node(name)? {
+        Some(node) => resolver.material(node),
+        None => Err(missing(name, element)),
+    }
+}
+
+/// A nested material that may be left out.
+pub(crate) fn optional_material(
+    params: &mut Params,
+    resolver: &mut dyn Resolver,
+    name: &str,
+) -> Result<Option<Id<Material>>, SceneError> {
+    let node: Option<NodeId> = params.try_node(name)?;
+    node.map(|node| resolver.material(node)).transpose()
+}
+
+fn missing(name: &str, element: &str) -> SceneError {
+    SceneError::MissingParam { element: element.into(), param: name.into(), wanted: "a material".into(), at: Span::NONE }
+}

@@ -1,0 +1,92 @@
+//! `rough_conductor`: a rough metal, by microfacets.
+//!
+//! Parameters: those of `conductor`, and `distribution`, `alpha`, `alpha_u`, `alpha_v`.
+//!
+//! References: [Walter et al. 2007] "Microfacet Models for Refraction through Rough Surfaces", equation 20.
+
+use aureole_desc::{ParamDoc, Params, SceneError};
+use aureole_math::{Point2, Vector3, reflect};
+use aureole_spectrum::Spectrum;
+
+use super::conductor::{METAL_PARAMS, Metal, Metallic};
+use super::microfacet::{Microfacet, ROUGHNESS_PARAMS, Roughness};
+use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode};
+use crate::{Element, Resolver};
+
+/// A rough metal.
+#[derive(Clone, Copy, Debug)]
+pub struct RoughConductor {
+    metal: Metallic,
+    roughness: Roughness,
+}
+
+impl Element for RoughConductor {
+    const SUMMARY: &'static str = "A rough metal.";
+    const PARAMS: &'static [ParamDoc] = &{
+        let [a, b, c, d, e] = METAL_PARAMS;
+        let [f, g, h, i] = ROUGHNESS_PARAMS;
+        [a, b, c, d, e, f, g, h, i]
+    };
+
+    fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
+        let metal = Metallic::from_params(params, resolver)?;
+        Ok(Self { metal, roughness: Roughness::from_params(params, resolver)? })
+    }
+}
+
+impl MaterialOps for RoughConductor {
+    fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
+        let lobe = RoughConductorLobe { metal: self.metal.at(&at.texture), surface: self.roughness.at(&at.texture) };
+        out.push(lobe, weight, at.frame, at.frame.n);
+    }
+}
+
+/// Reflection by the facets of a metal.
+#[derive(Clone, Copy, Debug)]
+pub struct RoughConductorLobe {
+    /// The metal.
+    pub metal: Metal,
+    /// Its facets.
+    pub surface: Microfacet,
+}
+
+impl LobeOps for RoughConductorLobe {
+    #[inline]
+    fn eval(&self, wo: Vector3, wi: Vector3, _: TransportMode) -> Spectrum {
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            return Spectrum::ZERO;
+        }
+        let m = (wo + wi).normalized();
+        let facets = self.surface.d(m) * self.surface.g(wo, wi, m) / (4.0 * wo.z * wi.z);
+        self.metal.reflectance(wo.dot(m)) * facets
+    }
+
+    #[inline]
+    fn sample(&self, wo: Vector3, _: f32, u: Point2, mode: TransportMode) -> Option<LobeSample> {
+        if wo.z <= 0.0 {
+            return None;
+        }
+        let wi = reflect(wo, self.surface.sample_visible(wo, u));
+        let pdf_omega = self.pdf_omega(wo, wi);
+        (wi.z > 0.0 && pdf_omega > 0.0).then(|| LobeSample {
+            wi,
+            value: self.eval(wo, wi, mode),
+            pdf_omega,
+            flags: LobeFlags::REFLECTION,
+            eta: 1.0,
+        })
+    }
+
+    #[inline]
+    fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            return 0.0;
+        }
+        let m = (wo + wi).normalized();
+        self.surface.pdf_visible(wo, m) / (4.0 * wo.abs_dot(m))
+    }
+
+    fn albedo(&self, wo: Vector3) -> Spectrum {
+        self.metal.reflectance(wo.z.abs())
+    }
+}

@@ -1,0 +1,136 @@
+//! `rough_dielectric`: frosted glass, by microfacets.
+//!
+//! Parameters: those of `dielectric`, and `distribution`, `alpha`, `alpha_u`, `alpha_v`.
+//!
+//! References: [Walter et al. 2007] "Microfacet Models for Refraction through Rough Surfaces", equations 20, 21.
+
+use aureole_desc::{ParamDoc, Params, SceneError};
+use aureole_math::{Point2, Vector3, reflect, refract};
+use aureole_spectrum::Spectrum;
+
+use super::dielectric::{Boundary, DIELECTRIC_PARAMS, Glass};
+use super::microfacet::{Microfacet, ROUGHNESS_PARAMS, Roughness};
+use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
+use crate::{Element, Resolver};
+
+/// Frosted glass.
+#[derive(Clone, Copy, Debug)]
+pub struct RoughDielectric {
+    boundary: Boundary,
+    roughness: Roughness,
+}
+
+impl Element for RoughDielectric {
+    const SUMMARY: &'static str = "Frosted glass.";
+    const PARAMS: &'static [ParamDoc] = &{
+        let [a, b, c, d] = DIELECTRIC_PARAMS;
+        let [e, f, g, h] = ROUGHNESS_PARAMS;
+        [a, b, c, d, e, f, g, h]
+    };
+
+    fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
+        let boundary = Boundary::from_params(params, resolver)?;
+        Ok(Self { boundary, roughness: Roughness::from_params(params, resolver)? })
+    }
+}
+
+impl MaterialOps for RoughDielectric {
+    fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
+        let lobe =
+            RoughDielectricLobe { glass: self.boundary.at(&at.texture), surface: self.roughness.at(&at.texture) };
+        out.push(lobe, weight, at.frame, at.frame.n);
+    }
+}
+
+/// Reflection and refraction by facets.
+#[derive(Clone, Copy, Debug)]
+pub struct RoughDielectricLobe {
+    /// The boundary.
+    pub glass: Glass,
+    /// Its facets.
+    pub surface: Microfacet,
+}
+
+/// The facet that turns one direction into the other.
+struct Facet {
+    /// Its normal, on the upper side.
+    m: Vector3,
+    is_reflection: bool,
+    /// Relative index along the path.
+    eta_path: f32,
+}
+
+impl RoughDielectricLobe {
+    #[inline]
+    fn facet(&self, wo: Vector3, wi: Vector3) -> Option<Facet> {
+        if wo.z == 0.0 || wi.z == 0.0 {
+            return None;
+        }
+        let is_reflection = wo.z * wi.z > 0.0;
+        let eta_path = if wo.z > 0.0 { self.glass.eta } else { 1.0 / self.glass.eta };
+        let m = if is_reflection { wo + wi } else { wo + wi * eta_path }.try_normalized()?;
+        let m = if m.z < 0.0 { -m } else { m };
+        // Back-facing facets do not count.
+        (m.dot(wo) * wo.z > 0.0 && m.dot(wi) * wi.z > 0.0).then_some(Facet { m, is_reflection, eta_path })
+    }
+
+    /// `wo` seen from the upper side, as the visible normals want it.
+    #[inline]
+    fn above(wo: Vector3) -> Vector3 {
+        if wo.z < 0.0 { -wo } else { wo }
+    }
+}
+
+impl LobeOps for RoughDielectricLobe {
+    #[inline]
+    fn eval(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> Spectrum {
+        let Some(facet) = self.facet(wo, wi) else { return Spectrum::ZERO };
+        let m = facet.m;
+        let f = fresnel::dielectric(wo.dot(m), self.glass.eta).reflectance;
+        let facets = self.surface.d(m) * self.surface.g(wo, wi, m) / (wo.z * wi.z).abs();
+        if facet.is_reflection {
+            return self.glass.reflectance * (f * facets * 0.25);
+        }
+        let denominator = (wo.dot(m) / facet.eta_path + wi.dot(m)).powi(2);
+        let squeeze = if mode == TransportMode::Radiance { facet.eta_path.powi(-2) } else { 1.0 };
+        self.glass.transmittance * ((1.0 - f) * facets * (wo.dot(m) * wi.dot(m)).abs() / denominator * squeeze)
+    }
+
+    #[inline]
+    fn sample(&self, wo: Vector3, uc: f32, u: Point2, mode: TransportMode) -> Option<LobeSample> {
+        if wo.z == 0.0 {
+            return None;
+        }
+        let m = self.surface.sample_visible(Self::above(wo), u);
+        let f = fresnel::dielectric(wo.dot(m), self.glass.eta).reflectance;
+        let (wi, flags, eta) = if uc < f {
+            (reflect(wo, m), LobeFlags::REFLECTION, 1.0)
+        } else {
+            let refraction = refract(wo, m, self.glass.eta)?;
+            (refraction.wt, LobeFlags::TRANSMISSION, refraction.eta)
+        };
+        if (wi.z * wo.z > 0.0) == flags.transmission {
+            return None;
+        }
+        let pdf_omega = self.pdf_omega(wo, wi);
+        (pdf_omega > 0.0).then(|| LobeSample { wi, value: self.eval(wo, wi, mode), pdf_omega, flags, eta })
+    }
+
+    #[inline]
+    fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {
+        let Some(facet) = self.facet(wo, wi) else { return 0.0 };
+        let m = facet.m;
+        let f = fresnel::dielectric(wo.dot(m), self.glass.eta).reflectance;
+        let pdf_m = self.surface.pdf_visible(Self::above(wo), m);
+        if facet.is_reflection {
+            return f * pdf_m / (4.0 * wo.abs_dot(m));
+        }
+        let denominator = (wo.dot(m) / facet.eta_path + wi.dot(m)).powi(2);
+        (1.0 - f) * pdf_m * wi.abs_dot(m) / denominator
+    }
+
+    fn albedo(&self, wo: Vector3) -> Spectrum {
+        let f = fresnel::dielectric(wo.z, self.glass.eta).reflectance;
+        self.glass.reflectance * f + self.glass.transmittance * (1.0 - f)
+    }
+}

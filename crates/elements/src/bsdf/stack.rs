@@ -1,0 +1,163 @@
+//! A BSDF at a point: a few weighted lobes, each in its shading frame.
+
+use arrayvec::ArrayVec;
+use aureole_math::{Frame, Point2, Vector3};
+use aureole_spectrum::Spectrum;
+
+use super::{Lobe, LobeFlags, LobeOps, TransportMode};
+
+/// How many lobes a BSDF may have; blends deeper than that lose their last ones.
+const MAX_LOBES: usize = 4;
+
+/// A lobe with its share of the whole and its place.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    lobe: Lobe,
+    weight: f32,
+    frame: Frame,
+    /// The shading normal before bump or normal mapping: both normals must agree about sides, or light would leak.
+    base_normal: Vector3,
+}
+
+/// The scattering at a point of a surface, in world space. The weights of its lobes sum to at most one.
+#[derive(Clone, Debug, Default)]
+pub struct Bsdf {
+    lobes: ArrayVec<Placed, MAX_LOBES>,
+}
+
+/// A direction drawn from a BSDF.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BsdfSample {
+    /// Unit direction in the world.
+    pub wi: Vector3,
+    /// Value times |cos θi| over density: what a path's throughput is multiplied by.
+    pub weight: Spectrum,
+    /// Density per steradian; meaningless for delta samples.
+    pub pdf_omega: f32,
+    /// The kind of scattering.
+    pub flags: LobeFlags,
+    /// Relative index of refraction along the path.
+    pub eta: f32,
+}
+
+impl Placed {
+    /// Both directions in the lobe's frame, unless a bent normal puts `wi` on the wrong side.
+    #[inline]
+    fn local(&self, wo: Vector3, wi: Vector3) -> Option<[Vector3; 2]> {
+        let bent = [self.frame.to_local(wo), self.frame.to_local(wi)];
+        let agrees = |v: Vector3, local: Vector3| v.dot(self.base_normal) * local.z > 0.0;
+        (agrees(wi, bent[1]) && agrees(wo, bent[0])).then_some(bent)
+    }
+
+    #[inline]
+    fn eval_cos(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> Spectrum {
+        match self.local(wo, wi) {
+            Some([wo, wi]) => self.lobe.eval(wo, wi, mode) * (wi.z.abs() * self.weight),
+            None => Spectrum::ZERO,
+        }
+    }
+
+    #[inline]
+    fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {
+        self.local(wo, wi).map_or(0.0, |[wo, wi]| self.lobe.pdf_omega(wo, wi))
+    }
+}
+
+impl Bsdf {
+    /// A BSDF without lobes: it absorbs everything.
+    #[inline]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a lobe in a frame; `base_normal` is the shading normal before it was bent.
+    #[inline]
+    pub fn push(&mut self, lobe: impl Into<Lobe>, weight: f32, frame: Frame, base_normal: Vector3) {
+        if weight > 0.0 && !self.lobes.is_full() {
+            self.lobes.push(Placed { lobe: lobe.into(), weight, frame, base_normal });
+        }
+    }
+
+    /// Lets later bends of normals be judged against `normal` for all lobes from the `first` on.
+    pub(super) fn rebase(&mut self, first: usize, normal: Vector3) {
+        for placed in &mut self.lobes[first..] {
+            placed.base_normal = normal.face_forward(placed.base_normal);
+        }
+    }
+
+    /// How many lobes there are.
+    pub(super) fn len(&self) -> usize {
+        self.lobes.len()
+    }
+
+    /// Whether light sampling can contribute: some lobe is not a Dirac.
+    #[inline]
+    pub fn is_smooth(&self) -> bool {
+        self.lobes.iter().any(|placed| !placed.lobe.is_delta())
+    }
+
+    /// Value times |cos θi|.
+    #[inline]
+    pub fn eval_cos(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> Spectrum {
+        match self.lobes.as_slice() {
+            [only] => only.eval_cos(wo, wi, mode),
+            lobes => lobes.iter().map(|placed| placed.eval_cos(wo, wi, mode)).sum(),
+        }
+    }
+
+    /// Density of [`sample`](Self::sample) per steradian.
+    #[inline]
+    pub fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {
+        match self.lobes.as_slice() {
+            [only] => only.pdf_omega(wo, wi),
+            lobes => {
+                let total: f32 = lobes.iter().map(|placed| placed.weight).sum();
+                lobes.iter().map(|placed| placed.weight * placed.pdf_omega(wo, wi)).sum::<f32>() / total
+            }
+        }
+    }
+
+    /// Draws a direction: first a lobe by weight (with `uc`), then a direction from it.
+    #[inline]
+    pub fn sample(&self, wo: Vector3, uc: f32, u: Point2, mode: TransportMode) -> Option<BsdfSample> {
+        let total: f32 = self.lobes.iter().map(|placed| placed.weight).sum();
+        let (chosen, uc) = self.choose(uc, total)?;
+        let local_wo = chosen.frame.to_local(wo);
+        let drawn = chosen.lobe.sample(local_wo, uc, u, mode)?;
+        let wi = chosen.frame.to_world(drawn.wi);
+        if wi.dot(chosen.base_normal) * drawn.wi.z <= 0.0 || wo.dot(chosen.base_normal) * local_wo.z <= 0.0 {
+            return None;
+        }
+        let probability = chosen.weight / total;
+        let (value_cos, pdf_omega) = if drawn.flags.delta || self.lobes.len() == 1 {
+            (drawn.value * (drawn.wi.z.abs() * chosen.weight), drawn.pdf_omega * probability)
+        } else {
+            (self.eval_cos(wo, wi, mode), self.pdf_omega(wo, wi))
+        };
+        let weight = value_cos / pdf_omega;
+        let usable = pdf_omega > 0.0 && weight.is_finite() && !weight.is_black();
+        usable.then_some(BsdfSample { wi, weight, pdf_omega, flags: drawn.flags, eta: drawn.eta })
+    }
+
+    /// The lobe at `uc`, and `uc` stretched to be used again.
+    #[inline]
+    fn choose(&self, uc: f32, total: f32) -> Option<(&Placed, f32)> {
+        if let [only] = self.lobes.as_slice() {
+            return Some((only, uc));
+        }
+        let mut rest = uc * total;
+        let last = self.lobes.last()?;
+        for placed in &self.lobes {
+            if rest < placed.weight {
+                return Some((placed, (rest / placed.weight).min(1.0 - f32::EPSILON)));
+            }
+            rest -= placed.weight;
+        }
+        Some((last, 1.0 - f32::EPSILON))
+    }
+
+    /// An estimate of how much light is scattered, for albedo images.
+    pub fn albedo(&self, wo: Vector3) -> Spectrum {
+        self.lobes.iter().map(|placed| placed.lobe.albedo(placed.frame.to_local(wo)) * placed.weight).sum()
+    }
+}

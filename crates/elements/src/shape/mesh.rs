@@ -1,0 +1,255 @@
+//! `mesh`: indexed triangles.
+//!
+//! | parameter | type | default | meaning |
+//! |---|---|---|---|
+//! | `mesh` | mesh | | positions, indices, and optionally normals, texture coordinates and attributes |
+//! | `face_normals` | bool | false | ignore vertex normals |
+
+use std::sync::Arc;
+
+use aureole_desc::{Attribute, Mesh, ParamDoc, Params, SceneError, Span};
+use aureole_math::{
+    Bounds3, Discrete, Frame, Normal3, Point2, Point3, Ray, Transform, Vector3, gamma, warp,
+};
+
+use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
+use crate::texture::MeshPoint;
+use crate::{Element, Resolver};
+
+/// A triangle mesh in level space.
+#[derive(Clone, Debug)]
+pub struct TriangleMesh {
+    positions: Arc<[[f32; 3]]>,
+    indices: Arc<[[u32; 3]]>,
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    attributes: Vec<Attribute>,
+    area: f32,
+    /// Triangles in proportion to their area; only for meshes that shine.
+    by_area: Option<Arc<Discrete>>,
+    /// +1, or -1 when the geometric normals are turned round.
+    orientation: f32,
+}
+
+impl TriangleMesh {
+    /// A mesh placed by a transform. `shines` prepares it for being sampled by area.
+    ///
+    /// # Errors
+    /// An invalid index, arrays of wrong lengths, or vertices that are not finite.
+    pub fn new(mesh: &Mesh, world_from_object: &Transform, flip_normals: bool, shines: bool) -> Result<Self, SceneError> {
+        mesh.check().map_err(|message| SceneError::invalid(message, Span::NONE))?;
+        let place = |p: &[f32; 3]| world_from_object.point(Point3::from(*p)).to_array();
+        let positions: Arc<[[f32; 3]]> = mesh.positions.iter().map(place).collect();
+        let broken = positions.iter().filter(|p| !Point3::from(**p).is_finite()).count();
+        if broken > 0 {
+            return Err(SceneError::invalid(format!("{broken} vertices are not finite numbers"), Span::NONE));
+        }
+        let turn = |n: &[f32; 3]| {
+            let n = Vector3::from(world_from_object.normal(Normal3::from(*n)));
+            let n = if flip_normals { -n } else { n };
+            n.try_normalized().unwrap_or(Vector3::ZERO).to_array()
+        };
+        let normals = mesh.normals.iter().map(turn).collect();
+        // A mirrored mesh would turn its cross products round; outside stays outside.
+        let orientation = if flip_normals != world_from_object.swaps_handedness() { -1.0 } else { 1.0 };
+        let mut this = Self {
+            positions,
+            indices: mesh.indices.as_slice().into(),
+            normals,
+            uvs: mesh.uvs.clone(),
+            attributes: mesh.attributes.clone(),
+            area: 0.0,
+            by_area: None,
+            orientation,
+        };
+        let areas = |this: &Self| (0..this.indices.len()).map(|i| this.cross(i).length() * 0.5).collect::<Vec<_>>();
+        if shines {
+            let areas = areas(&this);
+            this.area = areas.iter().map(|&a| f64::from(a)).sum::<f64>() as f32;
+            this.by_area = Discrete::new(areas).map(Arc::new);
+        } else {
+            this.area = areas(&this).iter().map(|&a| f64::from(a)).sum::<f64>() as f32;
+        }
+        Ok(this)
+    }
+
+    /// Vertices of a triangle.
+    #[inline]
+    fn triangle(&self, primitive: usize) -> [Point3; 3] {
+        self.indices[primitive].map(|i| Point3::from(self.positions[i as usize]))
+    }
+
+    /// Twice the area times the unit normal, as the vertices turn.
+    #[inline]
+    fn cross(&self, primitive: usize) -> Vector3 {
+        let [a, b, c] = self.triangle(primitive);
+        (b - a).cross(c - a)
+    }
+
+    /// Texture coordinates of a triangle's vertices; the unit triangle where the mesh has none.
+    #[inline]
+    fn triangle_uvs(&self, primitive: usize) -> [Point2; 3] {
+        if self.uvs.is_empty() {
+            [Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(0.0, 1.0)]
+        } else {
+            self.indices[primitive].map(|i| Point2::from(self.uvs[i as usize]))
+        }
+    }
+
+    /// The mesh's attributes at a hit.
+    pub(super) fn mesh_point(&self, hit: &ShapeHit) -> Option<MeshPoint<'_>> {
+        if self.attributes.is_empty() {
+            return None;
+        }
+        let [b1, b2] = hit.uv;
+        Some(MeshPoint {
+            attributes: &self.attributes,
+            face: hit.primitive,
+            vertices: self.indices[hit.primitive as usize],
+            barycentric: [1.0 - b1 - b2, b1, b2],
+        })
+    }
+
+    /// The point with given barycentric weights, its error, and its texture coordinates.
+    #[inline]
+    fn interpolate(&self, primitive: usize, b: [f32; 3]) -> (Point3, Vector3, Point2) {
+        let [p0, p1, p2] = self.triangle(primitive).map(Point3::to_vector);
+        let p = p0 * b[0] + p1 * b[1] + p2 * b[2];
+        let error = ((p0 * b[0]).abs() + (p1 * b[1]).abs() + (p2 * b[2]).abs()) * gamma(7);
+        let [t0, t1, t2] = self.triangle_uvs(primitive);
+        let uv = Point2::new(b[0] * t0.x + b[1] * t1.x + b[2] * t2.x, b[0] * t0.y + b[1] * t1.y + b[2] * t2.y);
+        (p.to_point(), error, uv)
+    }
+
+    /// Derivatives of position by the texture coordinates [PBRT4, section 6.5.2].
+    #[inline]
+    fn derivatives(&self, primitive: usize, ng: Vector3) -> [Vector3; 2] {
+        let [p0, p1, p2] = self.triangle(primitive);
+        let (dp02, dp12) = (p0 - p2, p1 - p2);
+        if !self.uvs.is_empty() {
+            let [t0, t1, t2] = self.triangle_uvs(primitive);
+            let (d02, d12) = (t0 - t2, t1 - t2);
+            let determinant = d02.x * d12.y - d02.y * d12.x;
+            if determinant != 0.0 {
+                let inv = 1.0 / determinant;
+                let dp_du = (dp02 * d12.y - dp12 * d02.y) * inv;
+                let dp_dv = (dp12 * d02.x - dp02 * d12.x) * inv;
+                if dp_du.is_finite() && dp_dv.is_finite() && dp_du.cross(dp_dv).length_squared() > 0.0 {
+                    return [dp_du, dp_dv];
+                }
+            }
+        }
+        let frame = Frame::from_normal(ng);
+        [frame.s, frame.t]
+    }
+}
+
+impl Element for TriangleMesh {
+    const SUMMARY: &'static str = "Indexed triangles.";
+    const PARAMS: &'static [ParamDoc] = &[
+        ParamDoc { name: "mesh", ty: "mesh", default: "", doc: "positions, indices, and optionally normals, uvs, attributes" },
+        ParamDoc { name: "face_normals", ty: "bool", default: "false", doc: "ignore vertex normals" },
+    ];
+
+    fn from_params(params: &mut Params, _: &mut dyn Resolver) -> Result<Self, SceneError> {
+        let placement = Placement::from_params(params)?;
+        let mesh = params.try_mesh("mesh")?.ok_or_else(|| SceneError::MissingParam {
+            element: "mesh".into(),
+            param: "mesh".into(),
+            wanted: "a triangle mesh".into(),
+            at: Span::NONE,
+        })?;
+        let shines = params.has("emission");
+        let mut built = Self::new(&mesh, &placement.world_from_object, placement.flip_normals, shines)?;
+        if params.bool("face_normals", false)? {
+            built.normals.clear();
+        }
+        Ok(built)
+    }
+}
+
+impl ShapeOps for TriangleMesh {
+    fn geometry(&self) -> Geometry {
+        Geometry::Triangles { positions: self.positions.clone(), indices: self.indices.clone() }
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        Bounds3::around(self.positions.iter().map(|p| Point3::from(*p)))
+    }
+
+    fn intersect(&self, _: &Ray, _: u32) -> Option<ShapeHit> {
+        None
+    }
+
+    #[inline]
+    fn surface(&self, _: &Ray, hit: &ShapeHit) -> SurfacePoint {
+        let primitive = hit.primitive as usize;
+        let [b1, b2] = hit.uv;
+        let b = [1.0 - b1 - b2, b1, b2];
+        let (p, error, uv) = self.interpolate(primitive, b);
+        let mut ng = self.cross(primitive).normalized() * self.orientation;
+        let mut ns = ng;
+        if !self.normals.is_empty() {
+            let [n0, n1, n2] = self.indices[primitive].map(|i| Vector3::from(self.normals[i as usize]));
+            if let Some(n) = (n0 * b[0] + n1 * b[1] + n2 * b[2]).try_normalized() {
+                ns = n;
+                // Vertex normals decide which side is outside, as in pbrt and Mitsuba.
+                ng = ng.face_forward(n);
+            }
+        }
+        let [dp_du, dp_dv] = self.derivatives(primitive, ng);
+        let frame = Frame::from_normal_and_tangent(ns, dp_du);
+        SurfacePoint { p, error, ng, frame, uv, dp_du, dp_dv, primitive: hit.primitive }
+    }
+
+    fn area(&self) -> f32 {
+        self.area
+    }
+
+    fn sample_area(&self, u: Point2) -> Option<ShapeSample> {
+        let choice = self.by_area.as_ref()?.sample(u.x);
+        let b = warp::square_to_triangle(Point2::new(choice.u, u.y));
+        let (p, error, uv) = self.interpolate(choice.index, [1.0 - b.x - b.y, b.x, b.y]);
+        let mut ng = self.cross(choice.index).normalized() * self.orientation;
+        if !self.normals.is_empty() {
+            let i = self.indices[choice.index];
+            let sum = i.iter().fold(Vector3::ZERO, |sum, &i| sum + Vector3::from(self.normals[i as usize]));
+            ng = ng.face_forward(sum);
+        }
+        Some(ShapeSample { p, error, ng, uv, pdf: 1.0 / self.area })
+    }
+
+    fn primitive_count(&self) -> usize {
+        self.indices.len()
+    }
+}
+
+/// Implements [`ShapeOps`] for a newtype around [`TriangleMesh`].
+macro_rules! delegate_to_mesh {
+    ($T:ident) => {
+        impl ShapeOps for $T {
+            fn geometry(&self) -> Geometry {
+                self.0.geometry()
+            }
+            fn bounds(&self) -> Bounds3 {
+                self.0.bounds()
+            }
+            fn intersect(&self, ray: &Ray, primitive: u32) -> Option<ShapeHit> {
+                self.0.intersect(ray, primitive)
+            }
+            fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
+                self.0.surface(ray, hit)
+            }
+            fn area(&self) -> f32 {
+                self.0.area()
+            }
+            fn sample_area(&self, u: Point2) -> Option<ShapeSample> {
+                self.0.sample_area(u)
+            }
+            fn primitive_count(&self) -> usize {
+                self.0.primitive_count()
+            }
+        }
+    };
+}
+pub(super) use delegate_to_mesh;

@@ -1,0 +1,90 @@
+//! What is known about a point of a surface.
+
+use aureole_math::{Frame, Point2, Point3, Ray, Transform, Vector3, gamma, offset_ray_origin};
+
+/// A point of a surface, in the space of whoever asks (world space for integrators).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// Position.
+    pub p: Point3,
+    /// Bound on the absolute rounding error of each coordinate of `p`.
+    pub error: Vector3,
+    /// Unit geometric normal; it points outwards.
+    pub ng: Vector3,
+    /// Shading frame: `n` is the (interpolated) shading normal, `s` follows `dp_du`.
+    pub frame: Frame,
+    /// Surface parameters for textures.
+    pub uv: Point2,
+    /// Derivative of position by u.
+    pub dp_du: Vector3,
+    /// Derivative of position by v.
+    pub dp_dv: Vector3,
+    /// The triangle, patch or part of the shape.
+    pub primitive: u32,
+}
+
+impl SurfacePoint {
+    /// A point whose shading frame follows its geometric normal.
+    pub fn new(p: Point3, error: Vector3, ng: Vector3, uv: Point2, dp_du: Vector3, dp_dv: Vector3) -> Self {
+        Self { p, error, ng, frame: Frame::from_normal_and_tangent(ng, dp_du), uv, dp_du, dp_dv, primitive: 0 }
+    }
+
+    /// The same point with another shading normal.
+    pub fn with_shading_normal(self, ns: Vector3) -> Self {
+        Self { frame: Frame::from_normal_and_tangent(ns, self.dp_du), ..self }
+    }
+
+    /// A ray that leaves the point towards `w` and cannot hit the same surface again by rounding.
+    #[inline]
+    pub fn spawn_ray(&self, w: Vector3, time: f32) -> Ray {
+        Ray { time, ..Ray::new(offset_ray_origin(self.p, self.error, self.ng, w), w) }
+    }
+
+    /// The point in another space.
+    pub fn transformed(&self, transform: &Transform) -> Self {
+        let normal = |n: Vector3| Vector3::from(transform.normal(n.into())).normalized();
+        let p = transform.point(self.p);
+        // The error grows with the map's stretch, and the map itself rounds.
+        let stretch = |e: Vector3| {
+            let rows = transform.rows();
+            let row = |i: usize| (0..3).map(|j| rows[i][j].abs() as f32 * e[j]).sum::<f32>();
+            Vector3::new(row(0), row(1), row(2))
+        };
+        let rows = transform.rows();
+        let magnitude = |i: usize| {
+            (0..3).map(|j| (rows[i][j] as f32 * self.p[j]).abs()).sum::<f32>() + (rows[i][3] as f32).abs()
+        };
+        let rounding = Vector3::new(magnitude(0), magnitude(1), magnitude(2)) * gamma(4);
+        let error = stretch(self.error) * (1.0 + gamma(4)) + rounding;
+        let (dp_du, dp_dv) = (transform.vector(self.dp_du), transform.vector(self.dp_dv));
+        let frame = Frame::from_normal_and_tangent(normal(self.frame.n), dp_du);
+        Self { p, error, ng: normal(self.ng), frame, dp_du, dp_dv, ..*self }
+    }
+}
+
+/// A point drawn from a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeSample {
+    /// Position.
+    pub p: Point3,
+    /// Bound on the rounding error of `p`.
+    pub error: Vector3,
+    /// Unit geometric normal.
+    pub ng: Vector3,
+    /// Surface parameters.
+    pub uv: Point2,
+    /// Density: per unit area from `sample_area`, per steradian from `sample_towards`.
+    pub pdf: f32,
+}
+
+impl ShapeSample {
+    /// Converts a density per area into one per steradian at `reference`; `None` at grazing angles.
+    #[inline]
+    pub fn into_solid_angle(self, reference: Point3) -> Option<Self> {
+        let d = self.p - reference;
+        let d2 = d.length_squared();
+        let cos = d.abs_dot(self.ng) / d2.sqrt();
+        let pdf = self.pdf * d2 / cos;
+        (cos > 0.0 && d2 > 0.0 && pdf.is_finite()).then_some(Self { pdf, ..self })
+    }
+}
