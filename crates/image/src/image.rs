@@ -101,7 +101,7 @@ impl Image {
 
     /// All pixels in order, each a slice of its channels.
     pub fn pixels(&self) -> impl ExactSizeIterator<Item = &[f32]> {
-        self.data.chunks_exact(self.channels.len())
+        self.data.chunks_exact(self.channels.len().max(1))
     }
 
     /// The place of a channel within a pixel.
@@ -186,6 +186,9 @@ impl Image {
 
     /// Checks that two images can be compared pixel by pixel.
     pub(crate) fn check_same_size(&self, other: &Self) -> Result<(), ImageError> {
+        if self.data.is_empty() || other.data.is_empty() {
+            return Err(ImageError::Mismatch("an image without pixels cannot be compared".into()));
+        }
         if (self.width, self.height) == (other.width, other.height) {
             return Ok(());
         }

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use aureole_image::{
     Attribute, BitDepth, Bitmap, Encoding, Format, Image, ImageError, ImageLimits, Precision, ToneMapping,
-    WriteOptions, decode_bitmap, decode_image, encode, read_bitmap, read_image, write_image,
+    WriteOptions, decode_bitmap, decode_image, encode, metric, read_bitmap, read_image, write_atomically,
+    write_image,
 };
 use proptest::prelude::*;
 
@@ -172,6 +173,24 @@ fn errors_tell_the_machine_from_the_content() {
     assert!(listed.contains("png") && !listed.contains("tga"), "{error}");
     let nowhere = folder.path().join("no/folder/out.png");
     assert!(write_image(&image, &nowhere, &WriteOptions::default()).unwrap_err().is_io());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_io_error() {
+    let bytes = encode(&sample(64, 64), Format::Png, &WriteOptions::default()).unwrap();
+    let error = write_atomically(Path::new("/dev/full"), &bytes).unwrap_err();
+    assert!(error.is_io(), "{error}");
+}
+
+#[test]
+fn an_image_without_pixels_is_an_error() {
+    for image in [Image::new(0, 0, &["R", "G", "B"]), Image::new(4, 4, &[])] {
+        for (name, format, options) in every_form() {
+            assert!(matches!(encode(&image, format, &options), Err(ImageError::Encode { .. })), "{name}");
+        }
+        assert!(metric::compare(&image, &image).is_err());
+    }
 }
 
 #[test]

@@ -106,3 +106,71 @@ pub(super) fn encode_hdr(image: &Image, _: &WriteOptions) -> Result<Vec<u8>, Str
     HdrEncoder::new(&mut out).encode(&pixels, image.width(), image.height()).map_err(|e| e.to_string())?;
     Ok(out)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::{Bitmap, Encoding, Format, decode_bitmap};
+
+    /// Gradients in the type that `picture` starts with, as a file of a format.
+    fn file(picture: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+        let mut out = Cursor::new(Vec::new());
+        picture.write_to(&mut out, format).unwrap();
+        out.into_inner()
+    }
+
+    fn read(bytes: &[u8], format: Format) -> Bitmap {
+        let path = Path::new("a").with_extension(format.suffix());
+        decode_bitmap(bytes, &path, Encoding::Linear, &ImageLimits::default()).unwrap()
+    }
+
+    #[test]
+    fn formats_that_are_only_read_are_read() {
+        let mut rgba = ::image::RgbaImage::new(13, 7);
+        for (x, y, pixel) in rgba.enumerate_pixels_mut() {
+            *pixel = ::image::Rgba([x as u8 * 19, y as u8 * 36, (x * y) as u8, 255 - x as u8]);
+        }
+        let picture = DynamicImage::ImageRgba8(rgba.clone());
+        for (theirs, ours) in [
+            (ImageFormat::Bmp, Format::Bmp),
+            (ImageFormat::Tga, Format::Tga),
+            (ImageFormat::Tiff, Format::Tiff),
+            (ImageFormat::WebP, Format::WebP),
+        ] {
+            let bitmap = read(&file(&picture, theirs), ours);
+            assert_eq!((bitmap.width(), bitmap.height(), bitmap.channels()), (13, 7, 4), "{ours:?}");
+            for (x, y, pixel) in rgba.enumerate_pixels() {
+                let expected = pixel.0.map(|value| f32::from(value) / 255.0);
+                let texel = bitmap.texel(x as usize, y as usize);
+                assert!(expected.iter().zip(texel).all(|(a, b)| (a - b).abs() < 1e-6), "{ours:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn grey_and_deep_files_keep_their_kind() {
+        let picture =
+            DynamicImage::ImageLumaA16(::image::ImageBuffer::from_pixel(3, 2, ::image::LumaA([40_000, 9])));
+        let bitmap = read(&file(&picture, ImageFormat::Png), Format::Png);
+        assert_eq!((bitmap.channels(), bitmap.memory()), (2, 3 * 2 * 2 * 2));
+        let [r, g, _, a] = bitmap.texel(2, 1);
+        assert!(r == g && (r - 40_000.0 / 65_535.0).abs() < 1e-6 && (a - 9.0 / 65_535.0).abs() < 1e-8);
+
+        let picture = DynamicImage::ImageLuma8(::image::ImageBuffer::from_pixel(5, 4, ::image::Luma([51])));
+        for (theirs, ours) in [(ImageFormat::Png, Format::Png), (ImageFormat::Pnm, Format::Ppm)] {
+            let bitmap = read(&file(&picture, theirs), ours);
+            assert!(bitmap.is_grey() && (bitmap.rgb(0, 0)[2] - 0.2).abs() < 1e-6, "{ours:?}");
+        }
+    }
+
+    #[test]
+    fn a_size_that_the_file_cannot_fill_is_refused() {
+        let mut bytes = file(&DynamicImage::new_rgb8(2, 2), ImageFormat::Bmp);
+        bytes[18..22].copy_from_slice(&15_000_i32.to_le_bytes());
+        bytes[22..26].copy_from_slice(&15_000_i32.to_le_bytes());
+        let error = decode(&bytes, &ImageLimits::default(), ImageFormat::Bmp).unwrap_err();
+        assert!(matches!(error, Fault::Content(message) if message.contains("cannot hold")));
+    }
+}

@@ -210,12 +210,15 @@ pub fn decode_bitmap(
     Bitmap::from_raster(decode(bytes, path, limits)?, encoding).ok_or_else(|| no_pixels(path))
 }
 
-/// An image as a file's bytes.
+/// An image as a file's bytes, to be written to a pipe or kept.
 ///
 /// # Errors
 /// [`ImageError::Encode`] for what the format cannot hold; [`ImageError::UnknownFormat`] if it can only be read.
 pub fn encode(image: &Image, format: Format, options: &WriteOptions) -> Result<Vec<u8>, ImageError> {
     let encode = format.codec().encode.ok_or_else(|| format::unknown(format.suffix(), Format::writable))?;
+    if image.data().is_empty() {
+        return Err(ImageError::Encode { message: "it has no pixels".into() });
+    }
     encode(image, options).map_err(|message| ImageError::Encode { message })
 }
 
