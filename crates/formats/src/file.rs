@@ -1,0 +1,156 @@
+//! Reading files within limits, packed or not, and finding them.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use aureole_desc::{Limits, SceneError, SourceId, Sources, Span};
+use flate2::read::MultiGzDecoder;
+
+/// The two bytes that every gzip file starts with (RFC 1952, section 2.3.1).
+const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
+
+/// Reads a whole file, unpacking gzip whatever its name is.
+///
+/// # Errors
+/// [`SceneError::Read`], or [`SceneError::Limit`] when it is, or unpacks to, more than `limits.max_file_bytes`.
+pub fn read_bytes(path: &Path, limits: &Limits, at: Span) -> Result<Vec<u8>, SceneError> {
+    let failed = |source| SceneError::Read { path: path.to_owned(), source, at };
+    let mut file = File::open(path).map_err(failed)?;
+    let size = file.metadata().map_err(failed)?.len();
+    check_size(path, size, limits, at)?;
+
+    // A pipe or device has no size, so what it yields is counted as it comes.
+    let mut bytes = Vec::with_capacity(size as usize);
+    read_capped(&mut file, &mut bytes, limits).map_err(failed)?;
+    check_size(path, bytes.len() as u64, limits, at)?;
+    if !bytes.starts_with(&GZIP_MAGIC) {
+        return Ok(bytes);
+    }
+
+    let mut unpacked = Vec::new();
+    read_capped(&mut MultiGzDecoder::new(&*bytes), &mut unpacked, limits).map_err(failed)?;
+    check_size(path, unpacked.len() as u64, limits, at)?;
+    Ok(unpacked)
+}
+
+/// Reads a text file and notes it in `sources`, so that spans can point into it.
+///
+/// Bytes that are not UTF-8 become replacement characters: old scenes have Latin-1 in their comments.
+///
+/// # Errors
+/// As [`read_bytes`].
+pub fn read_text(
+    path: &Path,
+    limits: &Limits,
+    sources: &mut Sources,
+    at: Span,
+) -> Result<(SourceId, Arc<str>), SceneError> {
+    let bytes = read_bytes(path, limits, at)?;
+    let text: Arc<str> = match String::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(error) => String::from_utf8_lossy(error.as_bytes()).into(),
+    };
+    Ok((sources.add_text(path, text.clone()), text))
+}
+
+/// The first bytes of a file (unpacked), enough to tell its format.
+pub(crate) fn read_start(path: &Path, limits: &Limits, at: Span) -> Result<Vec<u8>, SceneError> {
+    const ENOUGH: u64 = 4096;
+    let failed = |source| SceneError::Read { path: path.to_owned(), source, at };
+    let few = Limits { max_file_bytes: ENOUGH.min(limits.max_file_bytes), ..*limits };
+    let mut start = Vec::new();
+    read_capped(&mut File::open(path).map_err(failed)?, &mut start, &few).map_err(failed)?;
+    if start.starts_with(&GZIP_MAGIC) {
+        let packed = std::mem::take(&mut start);
+        // The packed bytes end early here: what came out before is enough.
+        let _ = read_capped(&mut MultiGzDecoder::new(&*packed), &mut start, &few);
+    }
+    Ok(start)
+}
+
+/// Reads to the end, or to one byte past the limit.
+pub(crate) fn read_capped(from: &mut impl Read, to: &mut Vec<u8>, limits: &Limits) -> io::Result<usize> {
+    from.take(limits.max_file_bytes.saturating_add(1)).read_to_end(to)
+}
+
+fn check_size(path: &Path, size: u64, limits: &Limits, at: Span) -> Result<(), SceneError> {
+    if size <= limits.max_file_bytes {
+        return Ok(());
+    }
+    let what = format!("size in bytes of `{}`", path.display());
+    Err(SceneError::Limit { what, found: size, limit: limits.max_file_bytes, at })
+}
+
+/// The folders in which a scene's relative file names are looked up, in order.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SearchPath {
+    folders: Vec<PathBuf>,
+}
+
+impl SearchPath {
+    /// Looks in the folder of `file` only.
+    pub fn beside(file: &Path) -> Self {
+        Self { folders: vec![file.parent().unwrap_or(Path::new("")).to_owned()] }
+    }
+
+    /// Adds a folder before all others.
+    pub fn push_front(&mut self, folder: PathBuf) {
+        self.folders.retain(|known| *known != folder);
+        self.folders.insert(0, folder);
+    }
+
+    /// The first existing file of that name; when there is none, where it was expected first.
+    ///
+    /// Backslashes, which scenes written on Windows have, count as slashes where no file of the literal name exists.
+    pub fn resolve(&self, name: &str) -> PathBuf {
+        let slashed = name.replace('\\', "/");
+        let candidates =
+            || [name, &slashed].into_iter().flat_map(|n| self.folders.iter().map(move |f| f.join(n)));
+        candidates().find(|path| path.exists()).or_else(|| candidates().next()).unwrap_or_else(|| name.into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    fn gzip(bytes: &[u8]) -> Vec<u8> {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        encoder.write_all(bytes).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    #[test]
+    fn packed_files_unpack_and_bombs_do_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("zeros.gz");
+        std::fs::write(&path, gzip(&vec![0; 1 << 20])).unwrap();
+        assert_eq!(read_bytes(&path, &Limits::default(), Span::NONE).unwrap().len(), 1 << 20);
+
+        let limits = Limits { max_file_bytes: 1 << 16, ..Limits::default() };
+        let error = read_bytes(&path, &limits, Span::NONE).unwrap_err();
+        assert!(matches!(error, SceneError::Limit { limit: 65536, .. }), "{error}");
+    }
+
+    #[test]
+    fn the_first_folder_that_has_the_file_wins() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("meshes")).unwrap();
+        std::fs::write(folder.path().join("meshes/a.ply"), "").unwrap();
+        let mut search = SearchPath::beside(&folder.path().join("scene.xml"));
+        search.push_front("/nowhere".into());
+        assert_eq!(search.resolve("meshes/a.ply"), folder.path().join("meshes/a.ply"));
+        assert_eq!(search.resolve("meshes\\a.ply"), folder.path().join("meshes/a.ply"));
+        assert_eq!(search.resolve("b.ply"), Path::new("/nowhere/b.ply"));
+    }
+
+    #[test]
+    fn a_missing_file_is_a_read_error() {
+        let error = read_bytes("/nowhere/at/all".as_ref(), &Limits::default(), Span::NONE).unwrap_err();
+        assert!(matches!(error, SceneError::Read { .. }));
+    }
+}

@@ -1,0 +1,8 @@
+//! Mesh files: bytes to [`Mesh`](aureole_desc::Mesh). No count in a file is believed before it is held against the bytes that are left.
+
+mod error;
+mod normals;
+pub mod ply;
+
+pub use error::MeshError;
+pub use normals::add_smooth_normals;
