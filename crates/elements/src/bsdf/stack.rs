@@ -78,10 +78,11 @@ impl Bsdf {
         }
     }
 
-    /// Lets later bends of normals be judged against `normal` for all lobes from the `first` on.
+    /// Lets the sides of all lobes from the `first` on be judged by the normal before it was bent.
     pub(super) fn rebase(&mut self, first: usize, normal: Vector3) {
         for placed in &mut self.lobes[first..] {
-            placed.base_normal = normal.face_forward(placed.base_normal);
+            // A two-sided material below may have turned its frame round; the base normal turns with it.
+            placed.base_normal = normal.face_forward(placed.frame.n);
         }
     }
 

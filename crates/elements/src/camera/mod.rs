@@ -1,0 +1,132 @@
+//! Cameras.
+//!
+//! Camera space looks along +Z with +Y up; the right of the image is −X (right-handed).
+
+mod fov;
+mod orthographic;
+mod perspective;
+mod spherical;
+
+use std::fmt::Debug;
+
+use aureole_math::{Point2, Ray};
+
+pub use fov::FovAxis;
+pub use orthographic::Orthographic;
+pub use perspective::Perspective;
+pub use spherical::Spherical;
+
+/// Which ray of a camera is wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraSample {
+    /// Place on the film in pixels, from the top left corner.
+    pub film: Point2,
+    /// Place on the lens, in the unit square.
+    pub lens: Point2,
+    /// Time within the shutter's interval, in [0, 1).
+    pub time: f32,
+}
+
+/// What every camera can do.
+pub trait CameraOps: Debug + Send + Sync {
+    /// The ray, with a unit direction in the world, that carries light to a place on the film.
+    fn generate_ray(&self, sample: &CameraSample) -> Ray;
+}
+
+registry! {
+    ($)
+    /// Any built-in camera.
+    Camera: CameraOps, match with each_camera;
+    perspective::Perspective as Perspective = "perspective",
+    orthographic::Orthographic as Orthographic = "orthographic",
+    spherical::Spherical as Spherical = "spherical",
+}
+
+impl Camera {
+    /// The ray, with a unit direction in the world, that carries light to a place on the film.
+    #[inline]
+    pub fn generate_ray(&self, sample: &CameraSample) -> Ray {
+        each_camera!(self, c => c.generate_ray(sample))
+    }
+}
+
+/// Parameters that projective cameras share.
+mod projective {
+    use aureole_desc::{ParamDoc, Params, SceneError};
+    use aureole_math::{Point2, Transform};
+
+    use crate::{FilmSpec, Resolver};
+
+    pub(super) const PARAMS: [ParamDoc; 8] = [
+        ParamDoc { name: "world_from_camera", ty: "transform", default: "identity", doc: "looks along +Z, +Y up" },
+        ParamDoc { name: "near_clip", ty: "float", default: "0.01", doc: "nothing nearer is seen" },
+        ParamDoc { name: "far_clip", ty: "float", default: "10000", doc: "nothing farther is seen" },
+        ParamDoc { name: "aperture_radius", ty: "float", default: "0", doc: "of the lens; 0 for a pinhole" },
+        ParamDoc { name: "focus_distance", ty: "float", default: "1", doc: "along the axis, to the plane in focus" },
+        ParamDoc { name: "shutter_open", ty: "float", default: "0", doc: "start of the exposure" },
+        ParamDoc { name: "shutter_close", ty: "float", default: "0", doc: "end of the exposure" },
+        ParamDoc { name: "screen_window", ty: "floats", default: "by fov", doc: "x0 x1 y0 y1 of the image at z = 1" },
+    ];
+
+    /// Where the camera is, what its lens does, and which part of the plane z = 1 its film shows.
+    #[derive(Clone, Copy, Debug)]
+    pub(super) struct Projective {
+        pub world_from_camera: Transform,
+        pub near: f32,
+        pub far: f32,
+        pub aperture_radius: f32,
+        pub focus_distance: f32,
+        pub shutter: [f32; 2],
+        film: FilmSpec,
+        /// Left, right, bottom, top; x grows to the right of the image.
+        pub window: [f32; 4],
+    }
+
+    impl Projective {
+        /// Reads the shared parameters; `default_half_width` is that of the window when none is given.
+        pub(super) fn from_params(
+            params: &mut Params,
+            resolver: &dyn Resolver,
+            default_half_width: f32,
+            default_far: f32,
+        ) -> Result<Self, SceneError> {
+            let film = resolver.film();
+            let half_height = default_half_width / film.aspect();
+            let window = match params.try_floats("screen_window")? {
+                Some(list) => match *list {
+                    [x0, x1, y0, y1] if x0 != x1 && y0 != y1 => [x0, x1, y0, y1],
+                    _ => {
+                        let at = params.span("screen_window");
+                        return Err(SceneError::invalid("`screen_window` must be four numbers: x0 x1 y0 y1", at));
+                    }
+                },
+                None => [-default_half_width, default_half_width, -half_height, half_height],
+            };
+            Ok(Self {
+                world_from_camera: params.transform("world_from_camera")?,
+                near: params.float_in("near_clip", 0.01, 0.0, f32::INFINITY)?,
+                far: params.float_in("far_clip", default_far, 0.0, f32::INFINITY)?,
+                aperture_radius: params.float_in("aperture_radius", 0.0, 0.0, f32::INFINITY)?,
+                focus_distance: params.float_in("focus_distance", 1.0, f32::MIN_POSITIVE, f32::INFINITY)?,
+                shutter: [params.float("shutter_open", 0.0)?, params.float("shutter_close", 0.0)?],
+                film,
+                window,
+            })
+        }
+
+        /// The place in the window, x to the right, of a place on the film in pixels from the top left.
+        #[inline]
+        pub(super) fn screen(&self, film: Point2) -> Point2 {
+            let [x0, x1, y0, y1] = self.window;
+            Point2::new(
+                x0 + (x1 - x0) * film.x / self.film.width as f32,
+                y1 + (y0 - y1) * film.y / self.film.height as f32,
+            )
+        }
+
+        #[inline]
+        pub(super) fn time(&self, t: f32) -> f32 {
+            self.shutter[0] + (self.shutter[1] - self.shutter[0]) * t
+        }
+    }
+}

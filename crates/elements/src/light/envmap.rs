@@ -1,0 +1,201 @@
+//! `envmap`: surroundings from a picture, importance-sampled.
+//!
+//! | parameter | type | default | meaning |
+//! |---|---|---|---|
+//! | `filename` | path | | EXR, HDR, ... |
+//! | `scale` | float | 1 | factor |
+//! | `tint` | spectrum | 1 | another factor |
+//! | `mapping` | string | latlong | `latlong` (+Y up, the left border towards −Z) or `equal_area` (pbrt-v4, +Z up) |
+//! | `world_from_light` | transform | identity | |
+
+use std::f32::consts::{FRAC_1_PI, PI, TAU};
+use std::sync::Arc;
+
+use aureole_desc::{ParamDoc, Params, SceneError, Span};
+use aureole_image::{Bitmap, Encoding};
+use aureole_math::{Bounds3, PiecewiseConstant2D, Point2, Point3, Transform, Vector3, warp};
+use aureole_spectrum::{PreparedSpectrum, Spectrum, SpectrumRole, luminance};
+
+use super::{LightContext, LightOps, LightSample};
+use crate::{Element, Resolver, SurfacePoint};
+
+/// How a picture covers the sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mapping {
+    /// Longitude and latitude.
+    LatLong,
+    /// Clarberg's equal-area square.
+    EqualArea,
+}
+
+/// A place on the picture seen in a direction, and back.
+impl Mapping {
+    fn uv(self, w: Vector3) -> Point2 {
+        match self {
+            Self::LatLong => {
+                let u = warp::azimuth(w.x, -w.z) / TAU;
+                Point2::new(u, w.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI)
+            }
+            Self::EqualArea => warp::square_from_sphere_equal_area(w),
+        }
+    }
+
+    fn direction(self, uv: Point2) -> Vector3 {
+        match self {
+            Self::LatLong => {
+                let (sin_theta, cos_theta) = (uv.y * PI).sin_cos();
+                let (sin_phi, cos_phi) = (uv.x * TAU).sin_cos();
+                Vector3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta)
+            }
+            Self::EqualArea => warp::sphere_from_square_equal_area(uv),
+        }
+    }
+
+    /// Steradians per unit area of the picture at a height on it.
+    fn stretch(self, v: f32) -> f32 {
+        match self {
+            Self::LatLong => 2.0 * PI * PI * (v * PI).sin(),
+            Self::EqualArea => 4.0 * PI,
+        }
+    }
+}
+
+/// Surroundings from a picture.
+#[derive(Clone, Debug)]
+pub struct EnvironmentMap {
+    picture: Arc<Bitmap>,
+    mapping: Mapping,
+    scale: PreparedSpectrum,
+    world_from_light: Transform,
+    light_from_world: Transform,
+    distribution: Option<PiecewiseConstant2D>,
+    /// Mean radiance over the sphere, before `scale`.
+    mean: f32,
+}
+
+impl Element for EnvironmentMap {
+    const SUMMARY: &'static str = "Surroundings from a picture.";
+    const PARAMS: &'static [ParamDoc] = &[
+        ParamDoc { name: "filename", ty: "path", default: "", doc: "EXR, HDR, ..." },
+        ParamDoc { name: "scale", ty: "float", default: "1", doc: "factor" },
+        ParamDoc { name: "tint", ty: "spectrum", default: "1", doc: "another factor" },
+        ParamDoc { name: "mapping", ty: "string", default: "latlong", doc: "`latlong` or `equal_area`" },
+        ParamDoc { name: "world_from_light", ty: "transform", default: "identity", doc: "turns the picture" },
+    ];
+
+    fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
+        let at = params.span("filename");
+        let path = params.try_path("filename")?.ok_or_else(|| SceneError::MissingParam {
+            element: "envmap".into(),
+            param: "filename".into(),
+            wanted: "a picture file".into(),
+            at: Span::NONE,
+        })?;
+        let picture = resolver.bitmap(&path, Encoding::Auto, at)?;
+        let mapping = params.one_of("mapping", &[("latlong", Mapping::LatLong), ("equal_area", Mapping::EqualArea)])?;
+        let tint = params.spectrum("tint", 1.0)?.to_rgb(SpectrumRole::Illuminant);
+        let scale = params.float_in("scale", 1.0, 0.0, f32::INFINITY)?;
+        let tinted = aureole_spectrum::SpectrumSource::Rgb(tint.map(|c| c * scale));
+        Ok(Self::new(picture, mapping, tinted.prepare(SpectrumRole::Illuminant), params.transform("world_from_light")?))
+    }
+}
+
+impl EnvironmentMap {
+    fn new(picture: Arc<Bitmap>, mapping: Mapping, scale: PreparedSpectrum, world_from_light: Transform) -> Self {
+        let light_from_world = world_from_light.inverse();
+        let mut this =
+            Self { picture, mapping, scale, world_from_light, light_from_world, distribution: None, mean: 0.0 };
+        let (w, h) = (this.picture.width(), this.picture.height());
+        // Each cell's weight is the mean of the interpolated picture over it: [1 6 1] / 8 in both directions.
+        let mut weights = vec![0.0; w * h];
+        for y in 0..h {
+            let stretch = mapping.stretch((y as f32 + 0.5) / h as f32);
+            for x in 0..w {
+                let mut sum = 0.0;
+                for (j, wy) in [(-1, 0.125), (0, 0.75), (1, 0.125)] {
+                    for (i, wx) in [(-1, 0.125), (0, 0.75), (1, 0.125)] {
+                        sum += wx * wy * luminance(this.texel(x as i64 + i, y as i64 + j));
+                    }
+                }
+                weights[y * w + x] = sum.max(0.0) * stretch;
+            }
+        }
+        this.mean = weights.iter().map(|&x| f64::from(x)).sum::<f64>() as f32 / (w * h) as f32 / (4.0 * PI);
+        this.distribution = PiecewiseConstant2D::new(&weights, w);
+        this
+    }
+
+    #[inline]
+    fn texel(&self, x: i64, y: i64) -> [f32; 3] {
+        let (w, h) = (self.picture.width() as i64, self.picture.height() as i64);
+        let x = if self.mapping == Mapping::LatLong { x.rem_euclid(w) } else { x.clamp(0, w - 1) };
+        self.picture.rgb(x as usize, y.clamp(0, h - 1) as usize)
+    }
+
+    /// The interpolated picture.
+    fn lookup(&self, uv: Point2) -> Spectrum {
+        let (w, h) = (self.picture.width() as f32, self.picture.height() as f32);
+        let x = uv.x * w - 0.5;
+        // The first and last rows of a latitude picture are at the poles themselves, as Mitsuba has it.
+        let y = if self.mapping == Mapping::LatLong { uv.y * (h - 1.0) } else { uv.y * h - 0.5 };
+        let (x0, y0) = (x.floor(), y.floor());
+        let (fx, fy) = (x - x0, y - y0);
+        let texel = |i: i64, j: i64| Spectrum::from_rgb(self.texel(x0 as i64 + i, y0 as i64 + j));
+        texel(0, 0).lerp(texel(1, 0), fx).lerp(texel(0, 1).lerp(texel(1, 1), fx), fy)
+    }
+
+    fn local(&self, w: Vector3) -> Vector3 {
+        self.light_from_world.vector(w).normalized()
+    }
+}
+
+impl LightOps for EnvironmentMap {
+    fn sample(&self, at: &LightContext<'_>, _: Point3, u: Point2) -> Option<LightSample> {
+        let drawn = self.distribution.as_ref()?.sample(u)?;
+        let stretch = self.mapping.stretch(drawn.p.y);
+        let pdf_omega = drawn.pdf / stretch;
+        let radiance = self.lookup(drawn.p) * self.scale.eval(&at.wavelengths);
+        let wi = self.world_from_light.vector(self.mapping.direction(drawn.p)).try_normalized()?;
+        let usable = stretch > 0.0 && pdf_omega > 0.0 && pdf_omega.is_finite() && !radiance.is_black();
+        usable.then_some(LightSample { wi, target: None, radiance, pdf_omega, is_delta: false })
+    }
+
+    fn pdf_omega(&self, _: &LightContext<'_>, _: Point3, wi: Vector3, _: Option<&SurfacePoint>) -> f32 {
+        let uv = self.mapping.uv(self.local(wi));
+        let stretch = self.mapping.stretch(uv.y);
+        match &self.distribution {
+            Some(distribution) if stretch > 0.0 => distribution.pdf(uv) / stretch,
+            _ => 0.0,
+        }
+    }
+
+    fn environment(&self, at: &LightContext<'_>, w: Vector3) -> Spectrum {
+        self.lookup(self.mapping.uv(self.local(w))) * self.scale.eval(&at.wavelengths)
+    }
+
+    fn is_environment(&self) -> bool {
+        true
+    }
+
+    fn power(&self, at: &LightContext<'_>, scene: &Bounds3) -> f32 {
+        let radius = scene.radius();
+        luminance(self.scale.eval(&at.wavelengths).rgb()) * self.mean * 4.0 * PI * PI * radius * radius
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use aureole_math::Pcg32;
+
+    #[test]
+    fn directions_and_places_are_inverses() {
+        let mut rng = Pcg32::new(4);
+        for mapping in [Mapping::LatLong, Mapping::EqualArea] {
+            for _ in 0..1000 {
+                let w = warp::square_to_uniform_sphere(rng.point2());
+                assert!((mapping.direction(mapping.uv(w)) - w).length() < 2e-3, "{mapping:?} {w:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Lights.
+
+mod area;
+mod constant;
+mod directional;
+mod envmap;
+mod point;
+mod projector;
+mod spot;
+
+use std::fmt::Debug;
+
+use aureole_math::{Arena, Bounds3, Point2, Point3, Vector3};
+use aureole_spectrum::{Spectrum, Wavelengths};
+
+use crate::{Shape, SurfacePoint, Texture};
+
+pub use area::Area;
+pub use constant::ConstantEnvironment;
+pub use directional::Directional;
+pub use envmap::EnvironmentMap;
+pub use point::PointLight;
+pub use projector::Projector;
+pub use spot::Spot;
+
+/// What lights may ask for.
+#[derive(Clone, Copy, Debug)]
+pub struct LightContext<'a> {
+    /// All textures of the scene.
+    pub textures: &'a Arena<Texture>,
+    /// All shapes of the scene.
+    pub shapes: &'a Arena<Shape>,
+    /// What the lanes of radiance mean.
+    pub wavelengths: Wavelengths,
+}
+
+/// A direction towards a light, drawn from a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// Unit direction to the light.
+    pub wi: Vector3,
+    /// The point on the light, moved off its surface; `None` when the light is infinitely far.
+    pub target: Option<Point3>,
+    /// Radiance that arrives along `wi` if nothing is in between. Delta lights: with the Dirac divided out.
+    pub radiance: Spectrum,
+    /// Density per steradian; 1 for delta lights.
+    pub pdf_omega: f32,
+    /// Whether no other direction could have been drawn, so that no BSDF sample could hit the light.
+    pub is_delta: bool,
+}
+
+/// What every light can do.
+pub trait LightOps: Debug + Send + Sync {
+    /// Draws a direction from `reference` towards the light.
+    fn sample(&self, at: &LightContext<'_>, reference: Point3, u: Point2) -> Option<LightSample>;
+
+    /// The density of [`sample`](Self::sample) per steradian for a direction that left `reference`, met the light's
+    /// surface there, or escaped to the environment (`None`).
+    fn pdf_omega(
+        &self,
+        _at: &LightContext<'_>,
+        _reference: Point3,
+        _wi: Vector3,
+        _surface: Option<&SurfacePoint>,
+    ) -> f32 {
+        0.0
+    }
+
+    /// Radiance that leaves a point of the light's surface towards `w`.
+    fn emitted(&self, _at: &LightContext<'_>, _surface: &SurfacePoint, _w: Vector3) -> Spectrum {
+        Spectrum::ZERO
+    }
+
+    /// Radiance that arrives from far away along `w` (pointing away from the viewer).
+    fn environment(&self, _at: &LightContext<'_>, _w: Vector3) -> Spectrum {
+        Spectrum::ZERO
+    }
+
+    /// Whether rays that leave the scene see this light.
+    fn is_environment(&self) -> bool {
+        false
+    }
+
+    /// An estimate of the emitted power, for choosing among lights.
+    fn power(&self, at: &LightContext<'_>, scene: &Bounds3) -> f32;
+}
+
+registry! {
+    ($)
+    /// Any built-in light.
+    Light: LightOps, match with each_light;
+    area::Area as Area = "area",
+    point::PointLight as Point = "point",
+    spot::Spot as Spot = "spot",
+    directional::Directional as Directional = "directional",
+    constant::ConstantEnvironment as Constant = "constant",
+    envmap::EnvironmentMap as EnvironmentMap = "envmap",
+    projector::Projector as Projector = "projector",
+}
+
+impl Light {
+    /// Draws a direction from `reference` towards the light.
+    #[inline]
+    pub fn sample(&self, at: &LightContext<'_>, reference: Point3, u: Point2) -> Option<LightSample> {
+        each_light!(self, l => l.sample(at, reference, u))
+    }
+
+    /// The density of [`sample`](Self::sample).
+    #[inline]
+    pub fn pdf_omega(
+        &self,
+        at: &LightContext<'_>,
+        reference: Point3,
+        wi: Vector3,
+        surface: Option<&SurfacePoint>,
+    ) -> f32 {
+        each_light!(self, l => l.pdf_omega(at, reference, wi, surface))
+    }
+
+    /// Radiance that leaves a point of the light's surface towards `w`.
+    #[inline]
+    pub fn emitted(&self, at: &LightContext<'_>, surface: &SurfacePoint, w: Vector3) -> Spectrum {
+        each_light!(self, l => l.emitted(at, surface, w))
+    }
+
+    /// Radiance that arrives from far away along `w`.
+    #[inline]
+    pub fn environment(&self, at: &LightContext<'_>, w: Vector3) -> Spectrum {
+        each_light!(self, l => l.environment(at, w))
+    }
+
+    /// Whether rays that leave the scene see this light.
+    pub fn is_environment(&self) -> bool {
+        each_light!(self, l => l.is_environment())
+    }
+
+    /// An estimate of the emitted power.
+    pub fn power(&self, at: &LightContext<'_>, scene: &Bounds3) -> f32 {
+        each_light!(self, l => l.power(at, scene))
+    }
+}
