@@ -139,3 +139,38 @@ pub fn float_texture(
 ) -> Result<Id<Texture>, SceneError> {
     spectrum_texture(params, resolver, name, default, SpectrumRole::Unbounded)
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A resolver for elements that need nothing resolved.
+    #[derive(Default)]
+    pub(crate) struct NoResolver {
+        report: Report,
+    }
+
+    impl Resolver for NoResolver {
+        fn texture(&mut self, _: NodeId) -> Result<Id<Texture>, SceneError> {
+            Err(SceneError::invalid("no textures here", Span::NONE))
+        }
+        fn constant(&mut self, _: &SpectrumSource, _: SpectrumRole) -> Id<Texture> {
+            Id::new(0)
+        }
+        fn material(&mut self, _: NodeId) -> Result<Id<Material>, SceneError> {
+            Err(SceneError::invalid("no materials here", Span::NONE))
+        }
+        fn bitmap(&mut self, _: &Path, _: Encoding, _: Span) -> Result<Arc<Bitmap>, SceneError> {
+            Ok(Arc::new(Bitmap::placeholder([1.0; 3])))
+        }
+        fn film(&self) -> FilmSpec {
+            FilmSpec { width: 256, height: 256 }
+        }
+        fn emitting_shape(&self) -> Option<Id<Shape>> {
+            None
+        }
+        fn report(&mut self) -> &mut Report {
+            &mut self.report
+        }
+    }
+}

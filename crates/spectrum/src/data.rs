@@ -55,13 +55,16 @@ pub fn metals() -> &'static [Metal] {
         for line in rows(text) {
             if let Some(name) = line.strip_prefix("= ") {
                 list.push((name, Default::default()));
-            } else if let (Some((_, columns)), Ok(row)) = (list.last_mut(), <[f32; 3]>::try_from(numbers(line))) {
+            } else if let (Some((_, columns)), Ok(row)) =
+                (list.last_mut(), <[f32; 3]>::try_from(numbers(line)))
+            {
                 for (column, value) in columns.iter_mut().zip(row) {
                     column.push(value);
                 }
             }
         }
-        let table = |lambda: &[f32], values: Vec<f32>| Arc::new(Tabulated { lambda: lambda.to_vec(), values });
+        let table =
+            |lambda: &[f32], values: Vec<f32>| Arc::new(Tabulated { lambda: lambda.to_vec(), values });
         list.into_iter()
             .map(|(name, [lambda, eta, k])| Metal { name, eta: table(&lambda, eta), k: table(&lambda, k) })
             .collect()
@@ -86,7 +89,8 @@ pub fn dielectrics() -> impl Iterator<Item = (&'static str, f32)> {
 
 /// The index of refraction of an optical glass over wavelength, by Sellmeier's equation.
 pub fn glass(name: &str) -> Option<Arc<Tabulated>> {
-    let line = rows(include_str!("../data/glasses.txt")).find(|line| line.split_whitespace().next() == Some(name))?;
+    let line = rows(include_str!("../data/glasses.txt"))
+        .find(|line| line.split_whitespace().next() == Some(name))?;
     let c = numbers(line);
     let lambda: Vec<f32> = (0..=94).map(|i| 360.0 + 5.0 * i as f32).collect();
     let index = |l: &f32| {
@@ -180,7 +184,8 @@ mod tests {
     #[test]
     fn a_hot_body_obeys_wien() {
         let table = blackbody(5000.0);
-        let peak = (0..table.values.len()).max_by(|&a, &b| table.values[a].total_cmp(&table.values[b])).unwrap();
+        let peak =
+            (0..table.values.len()).max_by(|&a, &b| table.values[a].total_cmp(&table.values[b])).unwrap();
         assert!((table.lambda[peak] - 579.6).abs() < 5.0);
     }
 }

@@ -25,7 +25,12 @@ pub(super) struct Metallic {
 
 /// Documentation of the parameters of metals.
 pub(super) const METAL_PARAMS: [ParamDoc; 5] = [
-    ParamDoc { name: "material", ty: "string", default: "Cu", doc: "a metal's name, or `none` for a perfect mirror" },
+    ParamDoc {
+        name: "material",
+        ty: "string",
+        default: "Cu",
+        doc: "a metal's name, or `none` for a perfect mirror",
+    },
     ParamDoc { name: "eta", ty: "texture", default: "by material", doc: "index of refraction, real part" },
     ParamDoc { name: "k", ty: "texture", default: "by material", doc: "index of refraction, imaginary part" },
     ParamDoc { name: "ext_eta", ty: "float", default: "1", doc: "index of the medium outside" },
@@ -42,7 +47,8 @@ impl Metallic {
             return Ok(this);
         }
         if params.has("eta") || params.has("k") {
-            let mut part = |name, default| spectrum_texture(params, resolver, name, default, SpectrumRole::Unbounded);
+            let mut part =
+                |name, default| spectrum_texture(params, resolver, name, default, SpectrumRole::Unbounded);
             this.index = Some([part("eta", 0.0)?, part("k", 1.0)?]);
             return Ok(this);
         }
@@ -62,7 +68,8 @@ impl Metallic {
 
     #[inline]
     pub(super) fn at(&self, at: &TextureContext<'_>) -> Metal {
-        let index = self.index.map(|[eta, k]| [at.spectrum(eta) / self.ext_eta, at.spectrum(k) / self.ext_eta]);
+        let index =
+            self.index.map(|[eta, k]| [at.spectrum(eta) / self.ext_eta, at.spectrum(k) / self.ext_eta]);
         Metal { index, tint: at.spectrum(self.tint) }
     }
 }

@@ -16,9 +16,19 @@ use crate::{Element, Resolver, Texture, TextureContext, spectrum_texture};
 
 /// Documentation of the parameters of dielectrics.
 pub(super) const DIELECTRIC_PARAMS: [ParamDoc; 4] = [
-    ParamDoc { name: "int_ior", ty: "float or name", default: "bk7", doc: "index inside, or a substance's name" },
+    ParamDoc {
+        name: "int_ior",
+        ty: "float or name",
+        default: "bk7",
+        doc: "index inside, or a substance's name",
+    },
     ParamDoc { name: "ext_ior", ty: "float or name", default: "air", doc: "index outside" },
-    ParamDoc { name: "specular_reflectance", ty: "texture", default: "1", doc: "factor on what is reflected" },
+    ParamDoc {
+        name: "specular_reflectance",
+        ty: "texture",
+        default: "1",
+        doc: "factor on what is reflected",
+    },
     ParamDoc { name: "specular_transmittance", ty: "texture", default: "1", doc: "factor on what passes" },
 ];
 

@@ -39,7 +39,12 @@ impl Element for Diffuse {
 impl MaterialOps for Diffuse {
     #[inline]
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
-        out.push(DiffuseLobe { reflectance: at.texture.spectrum(self.reflectance) }, weight, at.frame, at.frame.n);
+        out.push(
+            DiffuseLobe { reflectance: at.texture.spectrum(self.reflectance) },
+            weight,
+            at.frame,
+            at.frame.n,
+        );
     }
 }
 

@@ -4,8 +4,8 @@ use aureole_math::{Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
 use super::{
-    ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, NullLobe, PlasticLobe, RoughConductorLobe,
-    RoughDielectricLobe, RoughPlasticLobe, ThinDielectricLobe,
+    ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, NullLobe, PlasticLobe,
+    RoughConductorLobe, RoughDielectricLobe, RoughPlasticLobe, ThinDielectricLobe,
 };
 
 /// What travels along a path: refraction squeezes radiance, but not importance.

@@ -21,7 +21,12 @@ pub struct Mask {
 impl Element for Mask {
     const SUMMARY: &'static str = "A material with holes.";
     const PARAMS: &'static [ParamDoc] = &[
-        ParamDoc { name: "opacity", ty: "texture", default: "0.5", doc: "0 where light passes, 1 where the material is" },
+        ParamDoc {
+            name: "opacity",
+            ty: "texture",
+            default: "0.5",
+            doc: "0 where light passes, 1 where the material is",
+        },
         ParamDoc { name: "bsdf", ty: "bsdf", default: "", doc: "the material" },
     ];
 

@@ -170,7 +170,8 @@ fn beckmann_slopes(cos_theta: f32, u: Point2) -> [f32; 2] {
 /// The error function [Abramowitz and Stegun 7.1.26]; absolute error below 1.5e-7.
 fn erf(x: f32) -> f32 {
     let t = 1.0 / (1.0 + 0.327_591_1 * x.abs());
-    let poly = t * (0.254_829_6 + t * (-0.284_496_74 + t * (1.421_413_7 + t * (-1.453_152 + t * 1.061_405_4))));
+    let poly =
+        t * (0.254_829_6 + t * (-0.284_496_74 + t * (1.421_413_7 + t * (-1.453_152 + t * 1.061_405_4))));
     (1.0 - poly * (-x * x).exp()).copysign(x)
 }
 
@@ -183,16 +184,30 @@ fn erf_inv(x: f32) -> f32 {
         horner(
             w - 2.5,
             [
-                2.810_226_4e-8, 3.432_739_4e-7, -3.523_387_7e-6, -4.391_506_5e-6, 2.185_808_7e-4, -1.253_725e-3,
-                -4.177_681_6e-3, 0.246_640_73, 1.501_409_4,
+                2.810_226_4e-8,
+                3.432_739_4e-7,
+                -3.523_387_7e-6,
+                -4.391_506_5e-6,
+                2.185_808_7e-4,
+                -1.253_725e-3,
+                -4.177_681_6e-3,
+                0.246_640_73,
+                1.501_409_4,
             ],
         )
     } else {
         horner(
             w.sqrt() - 3.0,
             [
-                -2.002_142_6e-4, 1.009_505_6e-4, 1.349_343_2e-3, -3.673_428_4e-3, 5.739_507_7e-3, -7.622_461_3e-3,
-                9.438_870_5e-3, 1.001_674_1, 2.832_976_8,
+                -2.002_142_6e-4,
+                1.009_505_6e-4,
+                1.349_343_2e-3,
+                -3.673_428_4e-3,
+                5.739_507_7e-3,
+                -7.622_461_3e-3,
+                9.438_870_5e-3,
+                1.001_674_1,
+                2.832_976_8,
             ],
         )
     };
@@ -227,7 +242,8 @@ impl Roughness {
     /// [`SceneError::BadParam`], or whatever is wrong with the textures.
     pub fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
         let both = float_texture(params, resolver, "alpha", 0.1)?;
-        let mut one = |name| if params.has(name) { float_texture(params, resolver, name, 0.1) } else { Ok(both) };
+        let mut one =
+            |name| if params.has(name) { float_texture(params, resolver, name, 0.1) } else { Ok(both) };
         let (alpha_u, alpha_v) = (one("alpha_u")?, one("alpha_v")?);
         Ok(Self { distribution: distribution(params)?, alpha_u, alpha_v })
     }

@@ -133,5 +133,10 @@ pub(crate) fn optional_material(
 }
 
 fn missing(name: &str, element: &str) -> SceneError {
-    SceneError::MissingParam { element: element.into(), param: name.into(), wanted: "a material".into(), at: Span::NONE }
+    SceneError::MissingParam {
+        element: element.into(),
+        param: name.into(),
+        wanted: "a material".into(),
+        at: Span::NONE,
+    }
 }

@@ -22,7 +22,12 @@ pub struct NormalMap {
 impl Element for NormalMap {
     const SUMMARY: &'static str = "Takes the shading normal from a picture.";
     const PARAMS: &'static [ParamDoc] = &[
-        ParamDoc { name: "texture", ty: "texture", default: "", doc: "normal in the shading frame, [-1, 1] as [0, 1]" },
+        ParamDoc {
+            name: "texture",
+            ty: "texture",
+            default: "",
+            doc: "normal in the shading frame, [-1, 1] as [0, 1]",
+        },
         ParamDoc { name: "bsdf", ty: "bsdf", default: "", doc: "the material" },
     ];
 

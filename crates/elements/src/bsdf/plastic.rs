@@ -20,10 +20,20 @@ use crate::{Element, Resolver, Texture, TextureContext, spectrum_texture};
 /// Documentation of the parameters of plastics.
 pub(super) const PLASTIC_PARAMS: [ParamDoc; 5] = [
     ParamDoc { name: "diffuse_reflectance", ty: "texture", default: "0.5", doc: "albedo of the base" },
-    ParamDoc { name: "specular_reflectance", ty: "texture", default: "1", doc: "factor on the coat's reflection" },
+    ParamDoc {
+        name: "specular_reflectance",
+        ty: "texture",
+        default: "1",
+        doc: "factor on the coat's reflection",
+    },
     ParamDoc { name: "int_ior", ty: "float or name", default: "polypropylene", doc: "index of the coat" },
     ParamDoc { name: "ext_ior", ty: "float or name", default: "air", doc: "index outside" },
-    ParamDoc { name: "nonlinear", ty: "bool", default: "false", doc: "deepen the base's colour by inner reflections" },
+    ParamDoc {
+        name: "nonlinear",
+        ty: "bool",
+        default: "false",
+        doc: "deepen the base's colour by inner reflections",
+    },
 ];
 
 /// What smooth and rough plastics share.
@@ -37,7 +47,8 @@ pub(super) struct Coated {
 
 impl Coated {
     pub(super) fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
-        let mut albedo = |name, default| spectrum_texture(params, resolver, name, default, SpectrumRole::Albedo);
+        let mut albedo =
+            |name, default| spectrum_texture(params, resolver, name, default, SpectrumRole::Albedo);
         let (diffuse, specular) = (albedo("diffuse_reflectance", 0.5)?, albedo("specular_reflectance", 1.0)?);
         let eta = relative_ior(params, "polypropylene")?;
         Ok(Self { eta, diffuse, specular, nonlinear: params.bool("nonlinear", false)? })
@@ -99,7 +110,12 @@ impl Element for Plastic {
 
 impl MaterialOps for Plastic {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
-        out.push(PlasticLobe { coat: self.coated.at(&at.texture, self.internal) }, weight, at.frame, at.frame.n);
+        out.push(
+            PlasticLobe { coat: self.coated.at(&at.texture, self.internal) },
+            weight,
+            at.frame,
+            at.frame.n,
+        );
     }
 }
 

@@ -36,7 +36,8 @@ impl Element for RoughConductor {
 
 impl MaterialOps for RoughConductor {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
-        let lobe = RoughConductorLobe { metal: self.metal.at(&at.texture), surface: self.roughness.at(&at.texture) };
+        let lobe =
+            RoughConductorLobe { metal: self.metal.at(&at.texture), surface: self.roughness.at(&at.texture) };
         out.push(lobe, weight, at.frame, at.frame.n);
     }
 }

@@ -36,8 +36,10 @@ impl Element for RoughDielectric {
 
 impl MaterialOps for RoughDielectric {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
-        let lobe =
-            RoughDielectricLobe { glass: self.boundary.at(&at.texture), surface: self.roughness.at(&at.texture) };
+        let lobe = RoughDielectricLobe {
+            glass: self.boundary.at(&at.texture),
+            surface: self.roughness.at(&at.texture),
+        };
         out.push(lobe, weight, at.frame, at.frame.n);
     }
 }
@@ -93,7 +95,8 @@ impl LobeOps for RoughDielectricLobe {
         }
         let denominator = (wo.dot(m) / facet.eta_path + wi.dot(m)).powi(2);
         let squeeze = if mode == TransportMode::Radiance { facet.eta_path.powi(-2) } else { 1.0 };
-        self.glass.transmittance * ((1.0 - f) * facets * (wo.dot(m) * wi.dot(m)).abs() / denominator * squeeze)
+        self.glass.transmittance
+            * ((1.0 - f) * facets * (wo.dot(m) * wi.dot(m)).abs() / denominator * squeeze)
     }
 
     #[inline]

@@ -85,7 +85,15 @@ impl Element for RoughPlastic {
     const PARAMS: &'static [ParamDoc] = &{
         let [a, b, c, d, e] = PLASTIC_PARAMS;
         let [f, _, _, _] = microfacet::ROUGHNESS_PARAMS;
-        [a, b, c, d, e, f, ParamDoc { name: "alpha", ty: "float", default: "0.1", doc: "roughness, in (0, 1]" }]
+        [
+            a,
+            b,
+            c,
+            d,
+            e,
+            f,
+            ParamDoc { name: "alpha", ty: "float", default: "0.1", doc: "roughness, in (0, 1]" },
+        ]
     };
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -173,6 +181,7 @@ impl LobeOps for RoughPlasticLobe {
 
     fn albedo(&self, wo: Vector3) -> Spectrum {
         let through = self.through(wo.z.abs());
-        self.coat.specular * (1.0 - through) + self.coat.base * (through * self.coat.eta * self.coat.eta * 0.6)
+        self.coat.specular * (1.0 - through)
+            + self.coat.base * (through * self.coat.eta * self.coat.eta * 0.6)
     }
 }

@@ -58,14 +58,29 @@ mod projective {
     use crate::{FilmSpec, Resolver};
 
     pub(super) const PARAMS: [ParamDoc; 8] = [
-        ParamDoc { name: "world_from_camera", ty: "transform", default: "identity", doc: "looks along +Z, +Y up" },
+        ParamDoc {
+            name: "world_from_camera",
+            ty: "transform",
+            default: "identity",
+            doc: "looks along +Z, +Y up",
+        },
         ParamDoc { name: "near_clip", ty: "float", default: "0.01", doc: "nothing nearer is seen" },
         ParamDoc { name: "far_clip", ty: "float", default: "10000", doc: "nothing farther is seen" },
         ParamDoc { name: "aperture_radius", ty: "float", default: "0", doc: "of the lens; 0 for a pinhole" },
-        ParamDoc { name: "focus_distance", ty: "float", default: "1", doc: "along the axis, to the plane in focus" },
+        ParamDoc {
+            name: "focus_distance",
+            ty: "float",
+            default: "1",
+            doc: "along the axis, to the plane in focus",
+        },
         ParamDoc { name: "shutter_open", ty: "float", default: "0", doc: "start of the exposure" },
         ParamDoc { name: "shutter_close", ty: "float", default: "0", doc: "end of the exposure" },
-        ParamDoc { name: "screen_window", ty: "floats", default: "by fov", doc: "x0 x1 y0 y1 of the image at z = 1" },
+        ParamDoc {
+            name: "screen_window",
+            ty: "floats",
+            default: "by fov",
+            doc: "x0 x1 y0 y1 of the image at z = 1",
+        },
     ];
 
     /// Where the camera is, what its lens does, and which part of the plane z = 1 its film shows.
@@ -97,7 +112,10 @@ mod projective {
                     [x0, x1, y0, y1] if x0 != x1 && y0 != y1 => [x0, x1, y0, y1],
                     _ => {
                         let at = params.span("screen_window");
-                        return Err(SceneError::invalid("`screen_window` must be four numbers: x0 x1 y0 y1", at));
+                        return Err(SceneError::invalid(
+                            "`screen_window` must be four numbers: x0 x1 y0 y1",
+                            at,
+                        ));
                     }
                 },
                 None => [-default_half_width, default_half_width, -half_height, half_height],

@@ -28,10 +28,30 @@ impl Element for Perspective {
     const PARAMS: &'static [ParamDoc] = &{
         let [a, b, c, d, e, f, g, h] = projective::PARAMS;
         [
-            ParamDoc { name: "fov", ty: "float", default: "45", doc: "angle of view along `fov_axis`, degrees" },
-            ParamDoc { name: "fov_axis", ty: "string", default: "x", doc: "`x`, `y`, `diagonal`, `smaller` or `larger`" },
-            ParamDoc { name: "principal_point_x", ty: "float", default: "0", doc: "shift as a fraction of the width" },
-            ParamDoc { name: "principal_point_y", ty: "float", default: "0", doc: "shift as a fraction of the height" },
+            ParamDoc {
+                name: "fov",
+                ty: "float",
+                default: "45",
+                doc: "angle of view along `fov_axis`, degrees",
+            },
+            ParamDoc {
+                name: "fov_axis",
+                ty: "string",
+                default: "x",
+                doc: "`x`, `y`, `diagonal`, `smaller` or `larger`",
+            },
+            ParamDoc {
+                name: "principal_point_x",
+                ty: "float",
+                default: "0",
+                doc: "shift as a fraction of the width",
+            },
+            ParamDoc {
+                name: "principal_point_y",
+                ty: "float",
+                default: "0",
+                doc: "shift as a fraction of the height",
+            },
             a,
             b,
             c,

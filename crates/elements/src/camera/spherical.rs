@@ -31,7 +31,12 @@ impl Element for Spherical {
     const SUMMARY: &'static str = "All directions at once, +Y up.";
     const PARAMS: &'static [ParamDoc] = &[
         ParamDoc { name: "mapping", ty: "string", default: "latlong", doc: "`latlong` or `equal_area`" },
-        ParamDoc { name: "world_from_camera", ty: "transform", default: "identity", doc: "where the camera is" },
+        ParamDoc {
+            name: "world_from_camera",
+            ty: "transform",
+            default: "identity",
+            doc: "where the camera is",
+        },
     ];
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -40,7 +45,8 @@ impl Element for Spherical {
         }
         Ok(Self {
             world_from_camera: params.transform("world_from_camera")?,
-            mapping: params.one_of("mapping", &[("latlong", Mapping::LatLong), ("equal_area", Mapping::EqualArea)])?,
+            mapping: params
+                .one_of("mapping", &[("latlong", Mapping::LatLong), ("equal_area", Mapping::EqualArea)])?,
             film: resolver.film(),
         })
     }
@@ -60,6 +66,9 @@ impl CameraOps for Spherical {
                 Vector3::new(w.x, w.z, w.y)
             }
         };
-        Ray::new(self.world_from_camera.point(Point3::ORIGIN), self.world_from_camera.vector(direction).normalized())
+        Ray::new(
+            self.world_from_camera.point(Point3::ORIGIN),
+            self.world_from_camera.vector(direction).normalized(),
+        )
     }
 }

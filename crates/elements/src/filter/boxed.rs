@@ -7,7 +7,7 @@
 use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point2, Vector2};
 
-use super::{FilterOps, FilterSample};
+use super::{FilterOps, FilterSample, radius};
 use crate::{Element, Resolver};
 
 /// The box filter.
@@ -26,11 +26,10 @@ impl BoxFilter {
 impl Element for BoxFilter {
     const SUMMARY: &'static str = "Every sample within the radius counts the same.";
     const PARAMS: &'static [ParamDoc] =
-        &[ParamDoc { name: "radius", ty: "float", default: "0.5", doc: "half the width, in pixels" }];
+        &[ParamDoc { name: "radius", ty: "float or pair", default: "0.5", doc: "half the width, in pixels" }];
 
     fn from_params(params: &mut Params, _: &mut dyn Resolver) -> Result<Self, SceneError> {
-        let radius = params.float_in("radius", 0.5, 1e-3, 64.0)?;
-        Ok(Self::new(Vector2::new(radius, radius)))
+        Ok(Self::new(radius(params, 0.5)?))
     }
 }
 

@@ -27,7 +27,12 @@ pub struct Area {
 impl Element for Area {
     const SUMMARY: &'static str = "A surface that shines; given to a shape as `emission`.";
     const PARAMS: &'static [ParamDoc] = &[
-        ParamDoc { name: "radiance", ty: "texture", default: "1", doc: "emitted radiance, over the shape's uv" },
+        ParamDoc {
+            name: "radiance",
+            ty: "texture",
+            default: "1",
+            doc: "emitted radiance, over the shape's uv",
+        },
         ParamDoc { name: "two_sided", ty: "bool", default: "false", doc: "shine on the inner side as well" },
     ];
 
@@ -85,6 +90,9 @@ impl LightOps for Area {
 
     fn power(&self, at: &LightContext<'_>, _: &Bounds3) -> f32 {
         let sides = if self.two_sided { 2.0 } else { 1.0 };
-        luminance(at.textures[self.radiance].mean(at.textures).rgb()) * at.shapes[self.shape].area() * PI * sides
+        luminance(at.textures[self.radiance].mean(at.textures).rgb())
+            * at.shapes[self.shape].area()
+            * PI
+            * sides
     }
 }

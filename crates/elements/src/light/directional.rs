@@ -27,8 +27,18 @@ impl Element for Directional {
     const SUMMARY: &'static str = "Parallel light from infinitely far away.";
     const PARAMS: &'static [ParamDoc] = &[
         ParamDoc { name: "direction", ty: "vector", default: "0, 0, 1", doc: "the way the light travels" },
-        ParamDoc { name: "irradiance", ty: "spectrum", default: "1", doc: "on a surface that faces the light, W/m²" },
-        ParamDoc { name: "world_from_light", ty: "transform", default: "identity", doc: "applied to `direction`" },
+        ParamDoc {
+            name: "irradiance",
+            ty: "spectrum",
+            default: "1",
+            doc: "on a surface that faces the light, W/m²",
+        },
+        ParamDoc {
+            name: "world_from_light",
+            ty: "transform",
+            default: "identity",
+            doc: "applied to `direction`",
+        },
     ];
 
     fn from_params(params: &mut Params, _: &mut dyn Resolver) -> Result<Self, SceneError> {

@@ -92,19 +92,37 @@ impl Element for EnvironmentMap {
             at: Span::NONE,
         })?;
         let picture = resolver.bitmap(&path, Encoding::Auto, at)?;
-        let mapping = params.one_of("mapping", &[("latlong", Mapping::LatLong), ("equal_area", Mapping::EqualArea)])?;
+        let mapping =
+            params.one_of("mapping", &[("latlong", Mapping::LatLong), ("equal_area", Mapping::EqualArea)])?;
         let tint = params.spectrum("tint", 1.0)?.to_rgb(SpectrumRole::Illuminant);
         let scale = params.float_in("scale", 1.0, 0.0, f32::INFINITY)?;
         let tinted = aureole_spectrum::SpectrumSource::Rgb(tint.map(|c| c * scale));
-        Ok(Self::new(picture, mapping, tinted.prepare(SpectrumRole::Illuminant), params.transform("world_from_light")?))
+        Ok(Self::new(
+            picture,
+            mapping,
+            tinted.prepare(SpectrumRole::Illuminant),
+            params.transform("world_from_light")?,
+        ))
     }
 }
 
 impl EnvironmentMap {
-    fn new(picture: Arc<Bitmap>, mapping: Mapping, scale: PreparedSpectrum, world_from_light: Transform) -> Self {
+    fn new(
+        picture: Arc<Bitmap>,
+        mapping: Mapping,
+        scale: PreparedSpectrum,
+        world_from_light: Transform,
+    ) -> Self {
         let light_from_world = world_from_light.inverse();
-        let mut this =
-            Self { picture, mapping, scale, world_from_light, light_from_world, distribution: None, mean: 0.0 };
+        let mut this = Self {
+            picture,
+            mapping,
+            scale,
+            world_from_light,
+            light_from_world,
+            distribution: None,
+            mean: 0.0,
+        };
         let (w, h) = (this.picture.width(), this.picture.height());
         // Each cell's weight is the mean of the interpolated picture over it: [1 6 1] / 8 in both directions.
         let mut weights = vec![0.0; w * h];

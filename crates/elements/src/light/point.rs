@@ -27,7 +27,12 @@ impl Element for PointLight {
     const PARAMS: &'static [ParamDoc] = &[
         ParamDoc { name: "position", ty: "point", default: "0, 0, 0", doc: "in the light's space" },
         ParamDoc { name: "intensity", ty: "spectrum", default: "1", doc: "radiant intensity, W/sr" },
-        ParamDoc { name: "world_from_light", ty: "transform", default: "identity", doc: "where the light is" },
+        ParamDoc {
+            name: "world_from_light",
+            ty: "transform",
+            default: "identity",
+            doc: "where the light is",
+        },
     ];
 
     fn from_params(params: &mut Params, _: &mut dyn Resolver) -> Result<Self, SceneError> {

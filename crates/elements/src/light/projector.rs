@@ -34,8 +34,18 @@ impl Element for Projector {
         ParamDoc { name: "irradiance", ty: "texture", default: "1", doc: "the slide" },
         ParamDoc { name: "scale", ty: "float", default: "1", doc: "factor" },
         ParamDoc { name: "fov", ty: "float", default: "45", doc: "angle of view along `fov_axis`, degrees" },
-        ParamDoc { name: "fov_axis", ty: "string", default: "x", doc: "`x`, `y`, `diagonal`, `smaller` or `larger`" },
-        ParamDoc { name: "world_from_light", ty: "transform", default: "identity", doc: "where the projector is" },
+        ParamDoc {
+            name: "fov_axis",
+            ty: "string",
+            default: "x",
+            doc: "`x`, `y`, `diagonal`, `smaller` or `larger`",
+        },
+        ParamDoc {
+            name: "world_from_light",
+            ty: "transform",
+            default: "identity",
+            doc: "where the projector is",
+        },
     ];
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -75,7 +85,8 @@ impl LightOps for Projector {
         if !(0.0..=1.0).contains(&u) || !(0.0..=1.0).contains(&v) {
             return None;
         }
-        let slide = TextureContext::at_uv(at.textures, at.wavelengths, Point2::new(u, v)).spectrum(self.slide);
+        let slide =
+            TextureContext::at_uv(at.textures, at.wavelengths, Point2::new(u, v)).spectrum(self.slide);
         let radiance = slide * (self.scale / (local.z * local.z * -self.axis.dot(wi)));
         (!radiance.is_black()).then_some(LightSample {
             wi,

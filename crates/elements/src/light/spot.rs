@@ -39,12 +39,32 @@ pub struct Spot {
 impl Element for Spot {
     const SUMMARY: &'static str = "Light from one point in a cone around +Z.";
     const PARAMS: &'static [ParamDoc] = &[
-        ParamDoc { name: "intensity", ty: "spectrum", default: "1", doc: "radiant intensity in the middle, W/sr" },
+        ParamDoc {
+            name: "intensity",
+            ty: "spectrum",
+            default: "1",
+            doc: "radiant intensity in the middle, W/sr",
+        },
         ParamDoc { name: "cutoff_angle", ty: "float", default: "20", doc: "half angle of the cone, degrees" },
-        ParamDoc { name: "beam_width", ty: "float", default: "3/4 cutoff", doc: "half angle of full intensity, degrees" },
+        ParamDoc {
+            name: "beam_width",
+            ty: "float",
+            default: "3/4 cutoff",
+            doc: "half angle of full intensity, degrees",
+        },
         ParamDoc { name: "falloff", ty: "string", default: "linear", doc: "`linear` or `smoothstep`" },
-        ParamDoc { name: "texture", ty: "texture", default: "1", doc: "thrown over the square around the cone" },
-        ParamDoc { name: "world_from_light", ty: "transform", default: "identity", doc: "where the light is" },
+        ParamDoc {
+            name: "texture",
+            ty: "texture",
+            default: "1",
+            doc: "thrown over the square around the cone",
+        },
+        ParamDoc {
+            name: "world_from_light",
+            ty: "transform",
+            default: "identity",
+            doc: "where the light is",
+        },
     ];
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -62,7 +82,8 @@ impl Element for Spot {
             intensity: params.spectrum("intensity", 1.0)?.prepare(SpectrumRole::Illuminant),
             cutoff: cutoff.to_radians(),
             beam: beam.to_radians(),
-            falloff: params.one_of("falloff", &[("linear", Falloff::Linear), ("smoothstep", Falloff::Smoothstep)])?,
+            falloff: params
+                .one_of("falloff", &[("linear", Falloff::Linear), ("smoothstep", Falloff::Smoothstep)])?,
             texture,
         })
     }

@@ -7,7 +7,7 @@
 use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point2, hash_u64};
 
-use super::{SampleKey, SamplerOps};
+use super::{SampleKey, SamplerOps, unit};
 use crate::{Element, Resolver};
 
 /// Uncorrelated uniform numbers.
@@ -37,12 +37,6 @@ impl Element for Independent {
 fn bits(key: SampleKey, dimension: u32) -> u64 {
     let place = u64::from(key.pixel_hash) << 32 | u64::from(key.sample);
     hash_u64(place ^ hash_u64(u64::from(dimension) ^ 0x9E37_79B9_7F4A_7C15))
-}
-
-/// The upper 24 bits as a number in [0, 1).
-#[inline]
-fn unit(bits: u32) -> f32 {
-    (bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
 impl SamplerOps for Independent {

@@ -1,12 +1,16 @@
 //! Sample generators: pure functions of (seed, pixel, sample index, dimension).
 
 mod independent;
+mod sobol;
+mod stratified;
 
 use std::fmt::Debug;
 
 use aureole_math::Point2;
 
 pub use independent::Independent;
+pub use sobol::Sobol;
+pub use stratified::Stratified;
 
 /// Which sample of which pixel: all that a sampler may depend on, besides the dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +49,8 @@ registry! {
     /// Any built-in sample generator.
     Sampler: SamplerOps, match with each_sampler;
     independent::Independent as Independent = "independent",
+    stratified::Stratified as Stratified = "stratified",
+    sobol::Sobol as Sobol = "sobol",
 }
 
 impl Sampler {
@@ -64,4 +70,10 @@ impl Sampler {
     pub fn get_2d(&self, key: SampleKey, dimension: u32) -> Point2 {
         each_sampler!(self, s => s.get_2d(key, dimension))
     }
+}
+
+/// The upper 24 bits as a number in [0, 1).
+#[inline]
+fn unit(bits: u32) -> f32 {
+    (bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }

@@ -60,7 +60,9 @@ impl BilinearMesh {
             return Point2::new(u, v);
         }
         let [a, b, c, d] = self.patches[patch].map(|i| self.uvs[i as usize]);
-        let blend = |a: f32, b: f32, c: f32, d: f32| (a * (1.0 - u) + b * u) * (1.0 - v) + (c * (1.0 - u) + d * u) * v;
+        let blend = |a: f32, b: f32, c: f32, d: f32| {
+            (a * (1.0 - u) + b * u) * (1.0 - v) + (c * (1.0 - u) + d * u) * v
+        };
         Point2::new(blend(a.x, b.x, c.x, d.x), blend(a.y, b.y, c.y, d.y))
     }
 
@@ -114,7 +116,8 @@ impl Element for BilinearMesh {
         if (!normals.is_empty() && normals.len() != n) || (!uvs.is_empty() && uvs.len() != n) {
             return Err(invalid("`normals` and `uvs` must have one entry for each vertex"));
         }
-        let patches: Vec<[u32; 4]> = indices.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]].map(|i| i as u32)).collect();
+        let patches: Vec<[u32; 4]> =
+            indices.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]].map(|i| i as u32)).collect();
         let flip = placement.flip_normals != place.swaps_handedness();
         let placeholder = Discrete::new([1.0]).ok_or_else(|| invalid("no patches"))?;
         let orientation = if flip { -1.0 } else { 1.0 };
@@ -201,7 +204,13 @@ impl ShapeOps for BilinearMesh {
         let pdf = self.pdf_area(choice.index, &point);
         let error = point.p.to_vector().abs() * gamma(16);
         let ng = self.normal(&point);
-        pdf.is_finite().then(|| ShapeSample { p: point.p, error, ng, uv: self.uv(choice.index, choice.u, u.y), pdf })
+        pdf.is_finite().then(|| ShapeSample {
+            p: point.p,
+            error,
+            ng,
+            uv: self.uv(choice.index, choice.u, u.y),
+            pdf,
+        })
     }
 
     fn pdf_towards(&self, reference: Point3, wi: Vector3, surface: &SurfacePoint) -> f32 {

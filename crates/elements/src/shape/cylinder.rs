@@ -40,7 +40,8 @@ impl Cylinder {
         let space = ObjectSpace::new(placement.world_from_object * along, placement.flip_normals);
         let mut cylinder = Self { space, phi_max, area: 0.0 };
         const STEPS: u32 = 1024;
-        let scales = (0..STEPS).map(|i| f64::from(space.area_scale(cylinder.normal_at((i as f32 + 0.5) / STEPS as f32))));
+        let scales = (0..STEPS)
+            .map(|i| f64::from(space.area_scale(cylinder.normal_at((i as f32 + 0.5) / STEPS as f32))));
         cylinder.area = phi_max * (scales.sum::<f64>() / f64::from(STEPS)) as f32;
         Some(cylinder)
     }
@@ -62,7 +63,12 @@ impl Element for Cylinder {
         ParamDoc { name: "p0", ty: "point", default: "0, 0, 0", doc: "start of the axis" },
         ParamDoc { name: "p1", ty: "point", default: "0, 0, 1", doc: "end of the axis" },
         ParamDoc { name: "radius", ty: "float", default: "1", doc: "radius" },
-        ParamDoc { name: "phi_max", ty: "float", default: "360", doc: "the part around the axis, in degrees" },
+        ParamDoc {
+            name: "phi_max",
+            ty: "float",
+            default: "360",
+            doc: "the part around the axis, in degrees",
+        },
     ];
 
     fn from_params(params: &mut Params, _: &mut dyn Resolver) -> Result<Self, SceneError> {

@@ -44,7 +44,12 @@ impl Element for Disk {
         ParamDoc { name: "inner_radius", ty: "float", default: "0", doc: "radius of the hole" },
         ParamDoc { name: "height", ty: "float", default: "0", doc: "z" },
         ParamDoc { name: "phi_max", ty: "float", default: "360", doc: "the part around Z, in degrees" },
-        ParamDoc { name: "uv", ty: "string", default: "radius_angle", doc: "`radius_angle` or `angle_radius`" },
+        ParamDoc {
+            name: "uv",
+            ty: "string",
+            default: "radius_angle",
+            doc: "`radius_angle` or `angle_radius`",
+        },
     ];
 
     fn from_params(params: &mut Params, _: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -58,7 +63,10 @@ impl Element for Disk {
             phi_max: params.float_in("phi_max", 360.0, 1e-3, 360.0)?.to_radians(),
             uv: params.one_of(
                 "uv",
-                &[("radius_angle", Parametrisation::RadiusAngle), ("angle_radius", Parametrisation::AngleRadius)],
+                &[
+                    ("radius_angle", Parametrisation::RadiusAngle),
+                    ("angle_radius", Parametrisation::AngleRadius),
+                ],
             )?,
         })
     }

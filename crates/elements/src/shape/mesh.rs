@@ -8,9 +8,7 @@
 use std::sync::Arc;
 
 use aureole_desc::{Attribute, Mesh, ParamDoc, Params, SceneError, Span};
-use aureole_math::{
-    Bounds3, Discrete, Frame, Normal3, Point2, Point3, Ray, Transform, Vector3, gamma, warp,
-};
+use aureole_math::{Bounds3, Discrete, Frame, Normal3, Point2, Point3, Ray, Transform, Vector3, gamma, warp};
 
 use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
 use crate::texture::MeshPoint;
@@ -36,7 +34,12 @@ impl TriangleMesh {
     ///
     /// # Errors
     /// An invalid index, arrays of wrong lengths, or vertices that are not finite.
-    pub fn new(mesh: &Mesh, world_from_object: &Transform, flip_normals: bool, shines: bool) -> Result<Self, SceneError> {
+    pub fn new(
+        mesh: &Mesh,
+        world_from_object: &Transform,
+        flip_normals: bool,
+        shines: bool,
+    ) -> Result<Self, SceneError> {
         mesh.check().map_err(|message| SceneError::invalid(message, Span::NONE))?;
         let place = |p: &[f32; 3]| world_from_object.point(Point3::from(*p)).to_array();
         let positions: Arc<[[f32; 3]]> = mesh.positions.iter().map(place).collect();
@@ -62,7 +65,8 @@ impl TriangleMesh {
             by_area: None,
             orientation,
         };
-        let areas = |this: &Self| (0..this.indices.len()).map(|i| this.cross(i).length() * 0.5).collect::<Vec<_>>();
+        let areas =
+            |this: &Self| (0..this.indices.len()).map(|i| this.cross(i).length() * 0.5).collect::<Vec<_>>();
         if shines {
             let areas = areas(&this);
             this.area = areas.iter().map(|&a| f64::from(a)).sum::<f64>() as f32;
@@ -117,7 +121,8 @@ impl TriangleMesh {
         let p = p0 * b[0] + p1 * b[1] + p2 * b[2];
         let error = ((p0 * b[0]).abs() + (p1 * b[1]).abs() + (p2 * b[2]).abs()) * gamma(7);
         let [t0, t1, t2] = self.triangle_uvs(primitive);
-        let uv = Point2::new(b[0] * t0.x + b[1] * t1.x + b[2] * t2.x, b[0] * t0.y + b[1] * t1.y + b[2] * t2.y);
+        let uv =
+            Point2::new(b[0] * t0.x + b[1] * t1.x + b[2] * t2.x, b[0] * t0.y + b[1] * t1.y + b[2] * t2.y);
         (p.to_point(), error, uv)
     }
 
@@ -147,7 +152,12 @@ impl TriangleMesh {
 impl Element for TriangleMesh {
     const SUMMARY: &'static str = "Indexed triangles.";
     const PARAMS: &'static [ParamDoc] = &[
-        ParamDoc { name: "mesh", ty: "mesh", default: "", doc: "positions, indices, and optionally normals, uvs, attributes" },
+        ParamDoc {
+            name: "mesh",
+            ty: "mesh",
+            default: "",
+            doc: "positions, indices, and optionally normals, uvs, attributes",
+        },
         ParamDoc { name: "face_normals", ty: "bool", default: "false", doc: "ignore vertex normals" },
     ];
 

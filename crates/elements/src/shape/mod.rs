@@ -172,11 +172,31 @@ impl Shape {
 
 /// The parameters that every shape understands besides its own; the scene's compiler reads those that are not geometry.
 pub const COMMON_PARAMS: &[aureole_desc::ParamDoc] = &[
-    aureole_desc::ParamDoc { name: "world_from_object", ty: "transform", default: "identity", doc: "where the shape is" },
-    aureole_desc::ParamDoc { name: "flip_normals", ty: "bool", default: "false", doc: "turn the surface inside out" },
+    aureole_desc::ParamDoc {
+        name: "world_from_object",
+        ty: "transform",
+        default: "identity",
+        doc: "where the shape is",
+    },
+    aureole_desc::ParamDoc {
+        name: "flip_normals",
+        ty: "bool",
+        default: "false",
+        doc: "turn the surface inside out",
+    },
     aureole_desc::ParamDoc { name: "bsdf", ty: "bsdf", default: "diffuse", doc: "the material" },
-    aureole_desc::ParamDoc { name: "emission", ty: "light", default: "", doc: "an `area` light that makes the shape shine" },
-    aureole_desc::ParamDoc { name: "alpha", ty: "texture", default: "1", doc: "probability that the surface is there" },
+    aureole_desc::ParamDoc {
+        name: "emission",
+        ty: "light",
+        default: "",
+        doc: "an `area` light that makes the shape shine",
+    },
+    aureole_desc::ParamDoc {
+        name: "alpha",
+        ty: "texture",
+        default: "1",
+        doc: "probability that the surface is there",
+    },
 ];
 
 /// Where a shape is, and which side is outside.

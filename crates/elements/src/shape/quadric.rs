@@ -27,8 +27,11 @@ impl ObjectSpace {
     /// A ray in object space, in double precision.
     #[inline]
     pub(super) fn ray(&self, ray: &Ray) -> ObjectRay {
-        let [o, d] = [self.object_from_world.point(ray.origin).to_vector(), self.object_from_world.vector(ray.direction)]
-            .map(|v| v.to_array().map(f64::from));
+        let [o, d] = [
+            self.object_from_world.point(ray.origin).to_vector(),
+            self.object_from_world.vector(ray.direction),
+        ]
+        .map(|v| v.to_array().map(f64::from));
         ObjectRay { o, d, t_min: f64::from(ray.t_min), t_max: f64::from(ray.t_max) }
     }
 

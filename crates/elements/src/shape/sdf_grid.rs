@@ -138,7 +138,7 @@ fn crossing(f: &impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> Option<f64> {
     for _ in 0..40 {
         let t = (a * fb - b * fa) / (fb - fa);
         let ft = f(t);
-        if ft.abs() < 1e-14 || (b - a) < 1e-12 {
+        if ft.abs() < 1e-14 || (b - a).abs() < 1e-12 {
             return Some(t);
         }
         if ft * fb < 0.0 {
@@ -154,7 +154,12 @@ fn crossing(f: &impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> Option<f64> {
 impl Element for SdfGrid {
     const SUMMARY: &'static str = "The zero level of signed distances on a grid over the unit cube.";
     const PARAMS: &'static [ParamDoc] = &[
-        ParamDoc { name: "values", ty: "floats", default: "", doc: "signed distances, x fastest; negative inside" },
+        ParamDoc {
+            name: "values",
+            ty: "floats",
+            default: "",
+            doc: "signed distances, x fastest; negative inside",
+        },
         ParamDoc { name: "resolution", ty: "ints", default: "", doc: "grid points in x, y, z" },
         ParamDoc { name: "normals", ty: "string", default: "smooth", doc: "`smooth` or `analytic`" },
     ];
@@ -163,7 +168,8 @@ impl Element for SdfGrid {
         let placement = Placement::from_params(params)?;
         let invalid = |message: &str| SceneError::invalid(message, Span::NONE);
         let values = params.try_floats("values")?.ok_or_else(|| invalid("sdf_grid needs `values`"))?;
-        let resolution = params.try_ints("resolution")?.ok_or_else(|| invalid("sdf_grid needs `resolution`"))?;
+        let resolution =
+            params.try_ints("resolution")?.ok_or_else(|| invalid("sdf_grid needs `resolution`"))?;
         let resolution = match *resolution {
             [x, y, z] if x >= 2 && y >= 2 && z >= 2 => [x as usize, y as usize, z as usize],
             _ => return Err(invalid("`resolution` must be three whole numbers of at least 2")),
@@ -171,9 +177,11 @@ impl Element for SdfGrid {
         if values.len() != resolution.iter().product::<usize>() || values.iter().any(|v| !v.is_finite()) {
             return Err(invalid("`values` must hold one finite number for each grid point"));
         }
-        let normals = params.one_of("normals", &[("smooth", Normals::Smooth), ("analytic", Normals::Analytic)])?;
+        let normals =
+            params.one_of("normals", &[("smooth", Normals::Smooth), ("analytic", Normals::Analytic)])?;
         let space = ObjectSpace::new(placement.world_from_object, placement.flip_normals);
-        let mut grid = Self { space, values: values.to_vec().into(), resolution, normals, voxels: Vec::new() };
+        let mut grid =
+            Self { space, values: values.to_vec().into(), resolution, normals, voxels: Vec::new() };
         let [nx, ny, nz] = resolution.map(|n| n as u32 - 1);
         let all = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
         let is_crossed = |v: &[u32; 3]| {
@@ -189,7 +197,9 @@ impl ShapeOps for SdfGrid {
     fn geometry(&self) -> Geometry {
         let cells = self.cells();
         let around = |v: &[u32; 3]| {
-            let corner = |add: f64| Point3::from(std::array::from_fn::<_, 3, _>(|i| ((f64::from(v[i]) + add) / cells[i]) as f32));
+            let corner = |add: f64| {
+                Point3::from(std::array::from_fn::<_, 3, _>(|i| ((f64::from(v[i]) + add) / cells[i]) as f32))
+            };
             self.space.world_from_object.bounds(&Bounds3::new(corner(0.0), corner(1.0)))
         };
         Geometry::Boxes(self.voxels.iter().map(around).collect())
@@ -221,7 +231,8 @@ impl ShapeOps for SdfGrid {
     fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
         let p = self.space.ray(ray).at(f64::from(hit.t));
         let voxel = self.voxels[hit.primitive as usize].map(|i| i as usize);
-        let direction = |g: [f64; 3]| Vector3::from(g.map(|x| x as f32)).try_normalized().unwrap_or(Vector3::Z);
+        let direction =
+            |g: [f64; 3]| Vector3::from(g.map(|x| x as f32)).try_normalized().unwrap_or(Vector3::Z);
         let ng = self.space.normal(direction(self.gradient(voxel, p)));
         let ns = match self.normals {
             Normals::Smooth => self.space.normal(direction(self.smooth_gradient(p))),
@@ -257,7 +268,10 @@ mod tests {
         // (s - 0.2)(s - 0.5)(s - 0.9): turns at (1.6 ± sqrt(0.37)) / 3.
         let f = |s: f64| (s - 0.2) * (s - 0.5) * (s - 0.9);
         let [a, b] = cubic_extrema([f(0.0), f(1.0 / 3.0), f(2.0 / 3.0), f(1.0)]);
-        assert!((a - (1.6 - 0.37_f64.sqrt()) / 3.0).abs() < 1e-9 && (b - (1.6 + 0.37_f64.sqrt()) / 3.0).abs() < 1e-9);
+        assert!(
+            (a - (1.6 - 0.37_f64.sqrt()) / 3.0).abs() < 1e-9
+                && (b - (1.6 + 0.37_f64.sqrt()) / 3.0).abs() < 1e-9
+        );
         assert!((crossing(&f, 0.0, a).unwrap() - 0.2).abs() < 1e-9);
     }
 }

@@ -45,8 +45,9 @@ impl Sphere {
         phi_max: f32,
         flip_v: bool,
     ) -> Self {
-        let place =
-            *world_from_object * Transform::translate(center.to_vector()) * Transform::scale(Vector3::splat(radius));
+        let place = *world_from_object
+            * Transform::translate(center.to_vector())
+            * Transform::scale(Vector3::splat(radius));
         let space = ObjectSpace::new(place, flip_normals);
         let axes = [Vector3::X, Vector3::Y, Vector3::Z].map(|a| place.vector(a));
         let size = axes[0].length();
@@ -126,7 +127,15 @@ impl Element for Sphere {
         let z = [a.min(b), a.max(b)].map(|z| (z / radius).clamp(-1.0, 1.0));
         let phi_max = params.float_in("phi_max", 360.0, 1e-3, 360.0)?.to_radians();
         let flip_v = params.bool("flip_v", false)?;
-        Ok(Self::part(center, radius, &placement.world_from_object, placement.flip_normals, z, phi_max, flip_v))
+        Ok(Self::part(
+            center,
+            radius,
+            &placement.world_from_object,
+            placement.flip_normals,
+            z,
+            phi_max,
+            flip_v,
+        ))
     }
 }
 
@@ -138,8 +147,10 @@ impl ShapeOps for Sphere {
     fn bounds(&self) -> Bounds3 {
         // The box of an ellipsoid: each axis reaches as far as the length of its row [exact for linear maps].
         let rows = self.space.world_from_object.rows();
-        let reach = |i: usize| ((0..3).map(|j| rows[i][j] * rows[i][j]).sum::<f64>().sqrt() * 1.000_001) as f32;
-        let (center, half) = (self.space.world_from_object.point(Point3::ORIGIN), Vector3::new(reach(0), reach(1), reach(2)));
+        let reach =
+            |i: usize| ((0..3).map(|j| rows[i][j] * rows[i][j]).sum::<f64>().sqrt() * 1.000_001) as f32;
+        let (center, half) =
+            (self.space.world_from_object.point(Point3::ORIGIN), Vector3::new(reach(0), reach(1), reach(2)));
         Bounds3::new(center - half, center + half)
     }
 
@@ -173,7 +184,14 @@ impl ShapeOps for Sphere {
         };
         let dv = if self.flip_v { -dv } else { dv };
         let vector = |v| self.space.world_from_object.vector(v);
-        SurfacePoint::new(p, error, self.space.normal(n), self.uv(n), vector(du * scale[0]), vector(dv * scale[1]))
+        SurfacePoint::new(
+            p,
+            error,
+            self.space.normal(n),
+            self.uv(n),
+            vector(du * scale[0]),
+            vector(dv * scale[1]),
+        )
     }
 
     fn area(&self) -> f32 {
@@ -186,7 +204,9 @@ impl ShapeOps for Sphere {
     }
 
     fn sample_towards(&self, reference: Point3, u: Point2) -> Option<ShapeSample> {
-        let Some((center, radius)) = self.ball else { return self.sample_area(u)?.into_solid_angle(reference) };
+        let Some((center, radius)) = self.ball else {
+            return self.sample_area(u)?.into_solid_angle(reference);
+        };
         let Some(one_minus_cos) = Self::cone(center, radius, reference) else {
             return self.sample_area(u)?.into_solid_angle(reference);
         };

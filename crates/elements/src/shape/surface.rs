@@ -26,7 +26,16 @@ pub struct SurfacePoint {
 impl SurfacePoint {
     /// A point whose shading frame follows its geometric normal.
     pub fn new(p: Point3, error: Vector3, ng: Vector3, uv: Point2, dp_du: Vector3, dp_dv: Vector3) -> Self {
-        Self { p, error, ng, frame: Frame::from_normal_and_tangent(ng, dp_du), uv, dp_du, dp_dv, primitive: 0 }
+        Self {
+            p,
+            error,
+            ng,
+            frame: Frame::from_normal_and_tangent(ng, dp_du),
+            uv,
+            dp_du,
+            dp_dv,
+            primitive: 0,
+        }
     }
 
     /// The same point with another shading normal.

@@ -122,8 +122,18 @@ impl Element for BitmapTexture {
     const PARAMS: &'static [ParamDoc] = &[
         ParamDoc { name: "filename", ty: "path", default: "", doc: "PNG, JPEG, EXR, HDR, TGA, ..." },
         ParamDoc { name: "filter", ty: "string", default: "bilinear", doc: "`bilinear` or `nearest`" },
-        ParamDoc { name: "wrap", ty: "string", default: "repeat", doc: "`repeat`, `mirror`, `clamp` or `black`" },
-        ParamDoc { name: "encoding", ty: "string", default: "auto", doc: "`auto`, `srgb`, `linear` or `gamma`" },
+        ParamDoc {
+            name: "wrap",
+            ty: "string",
+            default: "repeat",
+            doc: "`repeat`, `mirror`, `clamp` or `black`",
+        },
+        ParamDoc {
+            name: "encoding",
+            ty: "string",
+            default: "auto",
+            doc: "`auto`, `srgb`, `linear` or `gamma`",
+        },
         ParamDoc { name: "gamma", ty: "float", default: "2.2", doc: "for `encoding` = `gamma`" },
         ParamDoc { name: "channel", ty: "string", default: "color", doc: "`color` or `alpha`" },
         ParamDoc { name: "to_uv", ty: "transform", default: "identity", doc: "applied to the surface's uv" },
@@ -151,10 +161,16 @@ impl Element for BitmapTexture {
         )?;
         Ok(Self {
             bitmap: resolver.bitmap(&path, encoding, at)?,
-            filter: params.one_of("filter", &[("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)])?,
+            filter: params
+                .one_of("filter", &[("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)])?,
             wrap: params.one_of(
                 "wrap",
-                &[("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp), ("black", Wrap::Black)],
+                &[
+                    ("repeat", Wrap::Repeat),
+                    ("mirror", Wrap::Mirror),
+                    ("clamp", Wrap::Clamp),
+                    ("black", Wrap::Black),
+                ],
             )?,
             channel: params.one_of("channel", &[("color", Channel::Color), ("alpha", Channel::Alpha)])?,
             uv: UvMap::new(&params.transform("to_uv")?),

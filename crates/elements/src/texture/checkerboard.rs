@@ -32,7 +32,12 @@ impl Checkerboard {
 impl Element for Checkerboard {
     const SUMMARY: &'static str = "Squares of half a uv unit, in two textures.";
     const PARAMS: &'static [ParamDoc] = &[
-        ParamDoc { name: "color0", ty: "texture", default: "0.4", doc: "where both coordinates' halves agree" },
+        ParamDoc {
+            name: "color0",
+            ty: "texture",
+            default: "0.4",
+            doc: "where both coordinates' halves agree",
+        },
         ParamDoc { name: "color1", ty: "texture", default: "0.2", doc: "elsewhere" },
         ParamDoc { name: "to_uv", ty: "transform", default: "identity", doc: "applied to the surface's uv" },
     ];
