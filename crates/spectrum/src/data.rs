@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use crate::illuminant::{illuminant, illuminant_names};
 use crate::source::Tabulated;
 
 /// A row of the CIE's tables.
@@ -115,7 +116,9 @@ pub fn blackbody(kelvin: f32) -> Tabulated {
     Tabulated { values: lambda.iter().map(radiance).collect(), lambda }
 }
 
-/// A spectrum by one of pbrt's names: `metal-Au-eta`, `glass-BK7`, `stdillum-D65`, `stdillum-A`.
+/// A spectrum by one of pbrt's names: `metal-Au-eta`, `glass-BK7`, `stdillum-D65`, `stdillum-F2`, `illum-acesD60`.
+///
+/// Illuminants are relative: 100 at 560 nm, but the F series as the CIE prints it.
 pub fn named_spectrum(name: &str) -> Option<Arc<Tabulated>> {
     if let Some(rest) = name.strip_prefix("metal-") {
         let (metal_name, part) = rest.rsplit_once('-')?;
@@ -129,14 +132,7 @@ pub fn named_spectrum(name: &str) -> Option<Arc<Tabulated>> {
     if let Some(rest) = name.strip_prefix("glass-") {
         return glass(rest).or_else(|| glass(&format!("S{rest}"))); // pbrt says F5, F10, F11 for SF5, SF10, SF11
     }
-    match name {
-        "stdillum-D65" => {
-            let (lambda, values) = cie().iter().map(|row| (row.lambda, row.d65)).unzip();
-            Some(Arc::new(Tabulated { lambda, values }))
-        }
-        "stdillum-A" => Some(Arc::new(blackbody(2855.5))),
-        _ => None,
-    }
+    illuminant(name)
 }
 
 /// The names that [`named_spectrum`] knows, for "did you mean".
@@ -145,7 +141,7 @@ pub fn spectrum_names() -> Vec<String> {
     let glasses = rows(include_str!("../data/glasses.txt"))
         .filter_map(|line| line.split_whitespace().next())
         .map(|name| format!("glass-{name}"));
-    metals.chain(glasses).chain(["stdillum-D65".to_owned(), "stdillum-A".to_owned()]).collect()
+    metals.chain(glasses).chain(illuminant_names().map(str::to_owned)).collect()
 }
 
 #[cfg(test)]

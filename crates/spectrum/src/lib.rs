@@ -13,6 +13,7 @@
 
 mod color;
 mod data;
+mod illuminant;
 mod source;
 mod spectrum;
 mod wavelengths;

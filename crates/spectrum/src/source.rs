@@ -85,10 +85,11 @@ impl Tabulated {
                 let lerp = |a: f32, b: f32| a + (b - a) * t;
                 let light = if lit { lerp(pair[0].d65, pair[1].d65) } else { 1.0 };
                 let value = self.eval(lerp(pair[0].lambda, pair[1].lambda)) * light;
-                for c in 0..3 {
-                    xyz[c] += f64::from(lerp(pair[0].xyz[c], pair[1].xyz[c]) * value);
+                let matching: [f32; 3] = std::array::from_fn(|c| lerp(pair[0].xyz[c], pair[1].xyz[c]));
+                for (sum, weight) in xyz.iter_mut().zip(matching) {
+                    *sum += f64::from(weight * value);
                 }
-                norm += f64::from(lerp(pair[0].xyz[1], pair[1].xyz[1]) * light);
+                norm += f64::from(matching[1] * light);
             }
         }
         xyz.map(|x| (x / norm) as f32)
