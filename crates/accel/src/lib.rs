@@ -1,1 +1,30 @@
-//! Ray-intersection structures: list, grid, binary and wide hierarchies, triangle-mesh kernels.
+//! Ray-intersection structures: a hierarchy over boxes with leaf closures, triangle-mesh kernels, two-level scenes.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use aureole_accel::{Config, Geometry, NoUserShapes, World};
+//! use aureole_math::{Point3, Ray, Vector3};
+//!
+//! let triangle = Geometry::Triangles {
+//!     positions: Arc::from([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
+//!     indices: Arc::from([[0, 1, 2]]),
+//! };
+//! let world = World::build(vec![triangle], 0, &Config::default())?;
+//! let ray = Ray::new(Point3::new(0.2, 0.3, 1.0), -Vector3::Z);
+//! let hit = world.closest_hit(&ray, &NoUserShapes).expect("the ray points at the triangle");
+//! assert_eq!((hit.t, hit.u, hit.v), (1.0, 0.2, 0.3));
+//! # Ok::<(), aureole_accel::AccelError>(())
+//! ```
+
+mod bvh;
+mod config;
+mod error;
+mod hit;
+mod triangle;
+mod world;
+
+pub use bvh::Stats;
+pub use config::{Config, Structure};
+pub use error::AccelError;
+pub use hit::{Geometry, Hit, NO_INSTANCE, NoUserShapes, UserHit, UserShapes};
+pub use world::World;

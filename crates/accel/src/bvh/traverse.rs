@@ -1,0 +1,141 @@
+//! Walking the hierarchy, nearest children first.
+
+use aureole_math::{Ray, Vector3, gamma};
+
+use super::node::{Bvh8, COUNT_BITS, LEAF, Node, WIDTH};
+
+/// Entries that the walk may leave for later: seven a level, for a depth that the builder bounds.
+const STACK: usize = 512;
+
+/// A ray made ready for the box test.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TraversalRay {
+    origin: [f32; 3],
+    inv: [f32; 3],
+    /// Which side of each axis's slabs is entered first.
+    near: [usize; 3],
+    t_min: f32,
+}
+
+impl TraversalRay {
+    #[inline]
+    pub(crate) fn new(ray: &Ray) -> Self {
+        // A zero component would make 0 · ∞ = NaN of planes through the origin; a huge reciprocal does not.
+        let safe = |d: f32| if d.abs() < 1e-30 { 1e-30_f32.copysign(d) } else { d };
+        let d = ray.direction;
+        let inv = Vector3::new(1.0 / safe(d.x), 1.0 / safe(d.y), 1.0 / safe(d.z)).to_array();
+        Self {
+            origin: ray.origin.to_array(),
+            inv,
+            near: inv.map(|x| usize::from(x.is_sign_negative())),
+            t_min: ray.t_min,
+        }
+    }
+}
+
+/// Makes the far side reach as far as rounding could have taken it back [Ize 2013].
+const FAR_SCALE: f32 = 1.0 + 2.0 * gamma(3);
+
+/// Where the ray enters each of the eight boxes, and a bit for each that it meets before `t_max`.
+#[inline(always)]
+fn intersect_boxes(node: &Node, ray: &TraversalRay, t_max: f32) -> ([f32; WIDTH], u32) {
+    let mut enter = [ray.t_min; WIDTH];
+    let mut leave = [t_max; WIDTH];
+    for axis in 0..3 {
+        let near = &node.planes[axis][ray.near[axis]];
+        let far = &node.planes[axis][1 - ray.near[axis]];
+        let (o, inv) = (ray.origin[axis], ray.inv[axis]);
+        for i in 0..WIDTH {
+            let a = (near[i] - o) * inv;
+            let b = (far[i] - o) * inv * FAR_SCALE;
+            enter[i] = if a > enter[i] { a } else { enter[i] };
+            leave[i] = if b < leave[i] { b } else { leave[i] };
+        }
+    }
+    let mut mask = 0;
+    for i in 0..WIDTH {
+        mask |= u32::from(enter[i] <= leave[i]) << i;
+    }
+    (enter, mask)
+}
+
+/// What a leaf says after it was tested.
+pub(crate) enum Leaf {
+    /// Go on; hits at or beyond this parameter no longer matter.
+    Continue(f32),
+    /// The query is answered.
+    Stop,
+}
+
+impl Bvh8 {
+    /// Visits the leaves that a ray may meet, nearest first, with their first item and number of items.
+    #[inline]
+    pub(crate) fn walk(&self, ray: &TraversalRay, t_max: f32, leaf: impl FnMut(usize, usize) -> Leaf) {
+        #[cfg(target_arch = "x86_64")]
+        if crate::triangle::simd::has_avx2() {
+            #[expect(unsafe_code, reason = "the instruction set was just found to be there")]
+            // SAFETY: `has_avx2` says that AVX2 is available.
+            return unsafe { self.walk_avx2(ray, t_max, leaf) };
+        }
+        self.walk_generic(ray, t_max, leaf);
+    }
+
+    /// The same code, compiled for wider registers; no operation is fused, so the results are the same.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+    fn walk_avx2(&self, ray: &TraversalRay, t_max: f32, leaf: impl FnMut(usize, usize) -> Leaf) {
+        self.walk_generic(ray, t_max, leaf);
+    }
+
+    #[inline(always)]
+    fn walk_generic(&self, ray: &TraversalRay, mut t_max: f32, mut leaf: impl FnMut(usize, usize) -> Leaf) {
+        if self.nodes.is_empty() || t_max.is_nan() {
+            return;
+        }
+        let mut stack = [(0_u32, 0.0_f32); STACK];
+        let mut top = 0;
+        let mut current = 0_u32;
+        loop {
+            if current & LEAF != 0 {
+                let first = (current & !LEAF) >> COUNT_BITS;
+                match leaf(first as usize, (current & ((1 << COUNT_BITS) - 1)) as usize) {
+                    Leaf::Continue(t) => t_max = t,
+                    Leaf::Stop => return,
+                }
+            } else {
+                let node = &self.nodes[current as usize];
+                let (enter, mut mask) = intersect_boxes(node, ray, t_max);
+                if mask != 0 {
+                    // The nearest child next, the others onto the stack, farthest first.
+                    let start = top;
+                    while mask != 0 {
+                        let i = mask.trailing_zeros() as usize;
+                        mask &= mask - 1;
+                        let entry = (node.children[i], enter[i]);
+                        let mut at = top;
+                        while at > start && stack[at - 1].1 < entry.1 {
+                            stack[at] = stack[at - 1];
+                            at -= 1;
+                        }
+                        stack[at] = entry;
+                        top += 1;
+                    }
+                    top -= 1;
+                    current = stack[top].0;
+                    continue;
+                }
+            }
+            // What lies behind the hit found meanwhile is skipped; equally far things may still win by number.
+            loop {
+                if top == 0 {
+                    return;
+                }
+                top -= 1;
+                if stack[top].1 <= t_max {
+                    current = stack[top].0;
+                    break;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! What cannot be accelerated.
+
+/// Geometry that cannot be built upon.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AccelError {
+    /// Vertices that are NaN or infinite.
+    #[error("{count} vertices of geometry {geometry} are not finite")]
+    NonFinite {
+        /// The geometry's index.
+        geometry: usize,
+        /// How many vertices or boxes.
+        count: usize,
+    },
+    /// An index beyond the vertices.
+    #[error("triangle {triangle} of geometry {geometry} names vertex {index}, but there are {vertices}")]
+    BadIndex {
+        /// The geometry's index.
+        geometry: usize,
+        /// The triangle's index.
+        triangle: usize,
+        /// The vertex that is named.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// More than 2³² - 1 primitives.
+    #[error("{0} primitives are too many")]
+    TooMany(u64),
+}
