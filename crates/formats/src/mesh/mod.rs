@@ -2,7 +2,10 @@
 
 mod error;
 mod normals;
+pub mod obj;
 pub mod ply;
+pub mod serialized;
+pub mod vol;
 
 pub use error::MeshError;
 pub use normals::add_smooth_normals;
