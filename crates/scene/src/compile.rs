@@ -1,0 +1,325 @@
+//! From description to scene.
+
+use std::sync::Arc;
+
+use aureole_accel::{Config, Geometry, World};
+use aureole_desc::{Family, Limits, Node, NodeId, Params, Report, SceneDesc, SceneError, Span, Value};
+use aureole_elements::{Camera, Filter, Light, Material, Resolver, Sampler, Shape, shape};
+use aureole_math::{Arena, Bounds3, Id, Point3, Transform, Vector3};
+use aureole_spectrum::{SpectrumRole, SpectrumSource, Wavelengths};
+use rustc_hash::FxHashMap;
+
+use crate::film::Film;
+use crate::lights::LightPicker;
+use crate::resolve::Resolve;
+use crate::scene::{Instance, Object, Scene};
+
+/// Options of a compilation.
+#[derive(Clone, Debug, Default)]
+pub struct CompileOptions {
+    /// How acceleration structures are built.
+    pub accel: Config,
+    /// Which of the scene's cameras; the first by default.
+    pub camera: usize,
+    /// What a scene may ask for.
+    pub limits: Limits,
+}
+
+/// Builds every element of a description and the structures that answer rays.
+///
+/// # Errors
+/// The first thing that is wrong; further ones are in the report.
+pub fn compile(desc: &SceneDesc, options: &CompileOptions, report: &mut Report) -> Result<Scene, SceneError> {
+    let film = Film::from_node(desc.film.map(|id| &desc[id]), &options.limits)?;
+    let resolve = Resolve::new(desc, report, film.full, options.limits.max_pixels);
+    let mut compiler = Compiler {
+        resolve,
+        options,
+        shapes: Arena::new(),
+        lights: Arena::new(),
+        levels: vec![Vec::new()],
+        worlds: FxHashMap::default(),
+        unbounded: Vec::new(),
+        default_material: None,
+        begun_groups: Vec::new(),
+        lit_groups: false,
+    };
+    let world = compiler.world()?;
+    compiler.lights()?;
+    let bounds = world.bounds();
+    let camera = compiler.camera(bounds)?;
+    let filter = compiler.root(desc.filter, Family::Filter, "box", Filter::build)?;
+    let sampler = compiler.root(desc.sampler, Family::Sampler, "sobol", Sampler::build)?;
+    let integrator =
+        desc.integrator.map_or_else(|| default_node(Family::Integrator, "path"), |id| desc[id].clone());
+    Ok(compiler.finish(film, camera, filter, sampler, integrator, world))
+}
+
+struct Compiler<'a> {
+    resolve: Resolve<'a>,
+    options: &'a CompileOptions,
+    shapes: Arena<Shape>,
+    lights: Arena<Light>,
+    /// What the geometries of each level are; level 0 is the world.
+    levels: Vec<Vec<Object>>,
+    /// Groups that have been built.
+    worlds: FxHashMap<NodeId, Arc<World>>,
+    unbounded: Vec<Object>,
+    default_material: Option<Id<Material>>,
+    begun_groups: Vec<NodeId>,
+    lit_groups: bool,
+}
+
+fn default_node(family: Family, kind: &str) -> Node {
+    Node::new(family, kind, Params::new(), Span::NONE)
+}
+
+impl Compiler<'_> {
+    fn world(&mut self) -> Result<World, SceneError> {
+        let shapes = &self.resolve.desc.shapes;
+        self.level(0, shapes)
+    }
+
+    /// Builds the shapes of a level and what accelerates them. Goes on after errors, to report several at once.
+    fn level(&mut self, level: usize, nodes: &[NodeId]) -> Result<World, SceneError> {
+        let mut geometries = Vec::new();
+        let mut spans = Vec::new();
+        let mut first_error = None;
+        for &node in nodes {
+            match self.shape(level, node) {
+                Ok(Some(geometry)) => {
+                    geometries.push(geometry);
+                    spans.push(self.resolve.desc[node].span);
+                }
+                Ok(None) => {}
+                Err(error) if first_error.is_none() => first_error = Some(error),
+                Err(error) => self.resolve.report.errors.push(error),
+            }
+        }
+        if let Some(error) = first_error {
+            return Err(error);
+        }
+        World::build(geometries, level as u32, &self.options.accel).map_err(|error| {
+            SceneError::invalid(error.to_string(), spans.first().copied().unwrap_or(Span::NONE))
+        })
+    }
+
+    /// Builds a shape and says how the accelerator sees it; `None` for those that it does not see.
+    fn shape(&mut self, level: usize, node: NodeId) -> Result<Option<Geometry>, SceneError> {
+        self.resolve.expect(node, Family::Shape)?;
+        match self.resolve.desc[node].kind.as_str() {
+            "group" => Ok(None), // seen only through its instances
+            "instance" => self.instance(level, node).map(Some),
+            _ => self.solid(level, node),
+        }
+    }
+
+    fn instance(&mut self, level: usize, node: NodeId) -> Result<Geometry, SceneError> {
+        let desc = self.resolve.desc;
+        let span = desc[node].span;
+        if level > 0 {
+            return Err(SceneError::invalid("an instance cannot be inside a group", span));
+        }
+        let mut params = desc[node].params.clone();
+        let group = params.try_node("group")?.ok_or_else(|| SceneError::MissingParam {
+            element: "instance".into(),
+            param: "group".into(),
+            wanted: "a group of shapes".into(),
+            at: span,
+        })?;
+        let world_from_object = params.transform("world_from_object")?;
+        if !world_from_object.is_invertible() {
+            return Err(SceneError::invalid("the transform cannot be inverted", span));
+        }
+        let (world, inner_level) = self.group(group)?;
+        self.levels[0].push(Object::Instance(Instance { level: inner_level, world_from_object }));
+        Ok(Geometry::Instance { level: world, world_from_object })
+    }
+
+    /// The world of a group, built once, and its level.
+    fn group(&mut self, node: NodeId) -> Result<(Arc<World>, u32), SceneError> {
+        if let (Some(world), Some(level)) =
+            (self.worlds.get(&node), self.begun_groups.iter().position(|&g| g == node))
+        {
+            return Ok((world.clone(), level as u32 + 1));
+        }
+        self.resolve.expect(node, Family::Shape)?;
+        let desc = self.resolve.desc;
+        let mut params = desc[node].params.clone();
+        let children = params.nodes("shapes")?;
+        self.begun_groups.push(node);
+        self.levels.push(Vec::new());
+        let level = self.levels.len() - 1;
+        let world = Arc::new(self.level(level, &children)?);
+        self.worlds.insert(node, world.clone());
+        Ok((world, level as u32))
+    }
+
+    /// Builds a shape that is really there, with its material, emission and cut-out.
+    fn solid(&mut self, level: usize, node: NodeId) -> Result<Option<Geometry>, SceneError> {
+        let desc = self.resolve.desc;
+        let built = Shape::build(&desc[node], &mut self.resolve)?;
+        let geometry = match built.geometry() {
+            shape::Geometry::Triangles { positions, indices } => {
+                Some(Geometry::Triangles { positions, indices })
+            }
+            shape::Geometry::Boxes(boxes) => Some(Geometry::User(boxes)),
+            shape::Geometry::Unbounded => None,
+        };
+        let id = self.shapes.push(built);
+        let mut params = desc[node].params.clone();
+        let material = match params.try_node("bsdf")? {
+            Some(bsdf) => self.resolve.material(bsdf)?,
+            None => self.default_material()?,
+        };
+        let light = match params.try_node("emission")? {
+            Some(_) if level > 0 => {
+                self.lit_groups = true;
+                let help = "place the shape in the world itself".to_owned();
+                self.resolve.report.warn_with_help(
+                    "shapes inside groups cannot shine yet",
+                    Some(help),
+                    desc[node].span,
+                );
+                None
+            }
+            Some(emission) => Some(self.emission(id, emission)?),
+            None => None,
+        };
+        let alpha = if params.has("alpha") {
+            Some(aureole_elements::float_texture(&mut params, &mut self.resolve, "alpha", 1.0)?)
+        } else {
+            None
+        };
+        for name in ["interior", "exterior"] {
+            if params.has(name) {
+                self.resolve.report.warn("participating media are not rendered yet", params.span(name));
+            }
+        }
+        let object = Object::Solid { shape: id, material, light, alpha };
+        match geometry {
+            Some(_) => self.levels[level].push(object),
+            None if level == 0 => self.unbounded.push(object),
+            None => self.resolve.report.warn("an infinite plane inside a group is ignored", desc[node].span),
+        }
+        Ok(geometry)
+    }
+
+    fn emission(&mut self, shape: Id<Shape>, node: NodeId) -> Result<Id<Light>, SceneError> {
+        self.resolve.expect(node, Family::Light)?;
+        let desc = self.resolve.desc;
+        if !self.shapes[shape].area().is_finite() {
+            return Err(SceneError::invalid(
+                "this shape cannot shine: its area is not known",
+                desc[node].span,
+            ));
+        }
+        self.resolve.emitting_shape = Some(shape);
+        let light = Light::build(&desc[node], &mut self.resolve);
+        self.resolve.emitting_shape = None;
+        Ok(self.lights.push(light?))
+    }
+
+    fn default_material(&mut self) -> Result<Id<Material>, SceneError> {
+        if let Some(id) = self.default_material {
+            return Ok(id);
+        }
+        let grey = self.resolve.constant(&SpectrumSource::Uniform(0.5), SpectrumRole::Albedo);
+        let id = self.resolve.materials.push(aureole_elements::bsdf::Diffuse::new(grey).into());
+        self.default_material = Some(id);
+        Ok(id)
+    }
+
+    fn lights(&mut self) -> Result<(), SceneError> {
+        let desc = self.resolve.desc;
+        for &node in &desc.lights {
+            self.resolve.expect(node, Family::Light)?;
+            let light = Light::build(&desc[node], &mut self.resolve)?;
+            self.lights.push(light);
+        }
+        if self.lights.is_empty() {
+            self.resolve.report.warn("the scene has no lights: the image will be black", Span::NONE);
+        }
+        Ok(())
+    }
+
+    /// The chosen camera, or one that looks at everything.
+    fn camera(&mut self, bounds: Bounds3) -> Result<Camera, SceneError> {
+        let desc = self.resolve.desc;
+        if let Some(&node) = desc.cameras.get(self.options.camera) {
+            self.resolve.expect(node, Family::Camera)?;
+            return Camera::build(&desc[node], &mut self.resolve);
+        }
+        if self.options.camera > 0 {
+            let message =
+                format!("there is no camera {}; the scene has {}", self.options.camera, desc.cameras.len());
+            return Err(SceneError::invalid(message, Span::NONE));
+        }
+        self.resolve.report.warn("the scene has no camera: one that looks at everything is used", Span::NONE);
+        let radius = bounds.radius().max(1e-3);
+        let target = if bounds.is_empty() { Point3::ORIGIN } else { bounds.centroid() };
+        let origin = target + Vector3::new(0.6, 0.5, 1.0).normalized() * (radius * 2.9);
+        let place = Transform::look_at(origin, target, Vector3::Y).unwrap_or_default();
+        let params = Params::new()
+            .with("world_from_camera", Value::Transform(place))
+            .with("fov_axis", Value::String("smaller".into()))
+            .with("near_clip", Value::Float(f64::from(radius) * 1e-3))
+            .with("far_clip", Value::Float(f64::from(radius) * 1e3));
+        Camera::build(&Node::new(Family::Camera, "perspective", params, Span::NONE), &mut self.resolve)
+    }
+
+    /// Builds one of the scene's single elements, or its default.
+    fn root<T>(
+        &mut self,
+        node: Option<NodeId>,
+        family: Family,
+        default: &str,
+        build: fn(&Node, &mut dyn Resolver) -> Result<T, SceneError>,
+    ) -> Result<T, SceneError> {
+        let desc = self.resolve.desc;
+        match node {
+            Some(id) => {
+                self.resolve.expect(id, family)?;
+                build(&desc[id], &mut self.resolve)
+            }
+            None => build(&default_node(family, default), &mut self.resolve),
+        }
+    }
+
+    fn finish(
+        self,
+        film: Film,
+        camera: Camera,
+        filter: Filter,
+        sampler: Sampler,
+        integrator: Node,
+        world: World,
+    ) -> Scene {
+        let has_alpha =
+            self.levels.iter().flatten().any(|object| matches!(object, Object::Solid { alpha: Some(_), .. }));
+        let environments =
+            self.lights.iter().filter(|(_, light)| light.is_environment()).map(|(id, _)| id).collect();
+        let mut scene = Scene {
+            film,
+            camera,
+            filter,
+            sampler,
+            integrator,
+            textures: self.resolve.textures,
+            materials: self.resolve.materials,
+            shapes: self.shapes,
+            lights: self.lights,
+            picker: LightPicker::default(),
+            environments,
+            world,
+            levels: self.levels,
+            unbounded: self.unbounded,
+            has_alpha,
+        };
+        let context = scene.light_context(Wavelengths::RGB);
+        let bounds = scene.world.bounds();
+        let powers: Vec<f32> = scene.lights.iter().map(|(_, light)| light.power(&context, &bounds)).collect();
+        scene.picker = LightPicker::new(&powers);
+        scene
+    }
+}

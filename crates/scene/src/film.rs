@@ -1,0 +1,68 @@
+//! The image plane of a scene: its size and the part of it that is rendered.
+
+use aureole_desc::{Limits, Node, SceneError, Span};
+use aureole_elements::FilmSpec;
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// First column.
+    pub x: u32,
+    /// First row.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// Resolution and crop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Film {
+    /// The whole image.
+    pub full: FilmSpec,
+    /// What is rendered of it.
+    pub crop: Crop,
+}
+
+impl Film {
+    /// An uncropped film.
+    pub fn new(width: u32, height: u32) -> Self {
+        Self { full: FilmSpec { width, height }, crop: Crop { x: 0, y: 0, width, height } }
+    }
+
+    /// Reads a `film` node; 256 x 256 without one.
+    pub(crate) fn from_node(node: Option<&Node>, limits: &Limits) -> Result<Self, SceneError> {
+        let Some(node) = node else { return Ok(Self::new(256, 256)) };
+        let mut params = node.params.clone();
+        let mut size = |name: &str, default: i64| params.int_in(name, default, 1, 1 << 20).map(|n| n as u32);
+        let (width, height) = (size("width", 256)?, size("height", 256)?);
+        let mut film = Self::new(width, height);
+        if ["crop_x", "crop_y", "crop_width", "crop_height"].iter().any(|name| params.has(name)) {
+            let x = params.int_in("crop_x", 0, 0, i64::from(width) - 1)? as u32;
+            let y = params.int_in("crop_y", 0, 0, i64::from(height) - 1)? as u32;
+            let rest = |whole: u32, start: u32| i64::from(whole - start);
+            film.crop = Crop {
+                x,
+                y,
+                width: params.int_in("crop_width", rest(width, x), 1, rest(width, x))? as u32,
+                height: params.int_in("crop_height", rest(height, y), 1, rest(height, y))? as u32,
+            };
+        }
+        film.check(limits, node.span)?;
+        Ok(film)
+    }
+
+    fn check(&self, limits: &Limits, at: Span) -> Result<(), SceneError> {
+        let found = u64::from(self.crop.width) * u64::from(self.crop.height);
+        if found <= limits.max_pixels {
+            return Ok(());
+        }
+        Err(SceneError::Limit {
+            what: "the image's number of pixels".into(),
+            found,
+            limit: limits.max_pixels,
+            at,
+        })
+    }
+}

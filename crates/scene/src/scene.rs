@@ -1,0 +1,274 @@
+//! Scenes: what integrators ask.
+
+use aureole_accel::{Hit, NO_INSTANCE, Stats, World};
+use aureole_desc::Node;
+use aureole_elements::bsdf::MaterialContext;
+use aureole_elements::light::{LightContext, LightSample};
+use aureole_elements::shape::ShapeHit;
+use aureole_elements::{
+    Bsdf, Camera, Filter, Light, Material, Sampler, Shape, SurfacePoint, Texture, TextureContext,
+};
+use aureole_math::{Arena, Bounds3, Id, Ray, Transform, Vector3, offset_ray_origin};
+use aureole_spectrum::{Spectrum, Wavelengths};
+
+use crate::film::Film;
+use crate::lights::LightPicker;
+use crate::shapes::Lookup;
+
+/// What a geometry of a level is.
+#[derive(Clone, Debug)]
+pub(crate) enum Object {
+    Solid { shape: Id<Shape>, material: Id<Material>, light: Option<Id<Light>>, alpha: Option<Id<Texture>> },
+    Instance(Instance),
+}
+
+/// A group, placed.
+#[derive(Clone, Debug)]
+pub(crate) struct Instance {
+    pub level: u32,
+    pub world_from_object: Transform,
+}
+
+/// A scene that is ready for rays. Nothing in it changes while it is rendered.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Resolution and crop.
+    pub film: Film,
+    /// The camera.
+    pub camera: Camera,
+    /// The reconstruction filter.
+    pub filter: Filter,
+    /// The sample generator.
+    pub sampler: Sampler,
+    /// What the scene says about light transport.
+    pub integrator: Node,
+    pub(crate) textures: Arena<Texture>,
+    pub(crate) materials: Arena<Material>,
+    pub(crate) shapes: Arena<Shape>,
+    /// All lights.
+    pub lights: Arena<Light>,
+    /// Chooses among them.
+    pub picker: LightPicker,
+    pub(crate) environments: Vec<Id<Light>>,
+    pub(crate) world: World,
+    pub(crate) levels: Vec<Vec<Object>>,
+    pub(crate) unbounded: Vec<Object>,
+    pub(crate) has_alpha: bool,
+}
+
+/// Where a ray meets the scene.
+pub type SceneHit = Hit;
+
+/// Stands in a hit's geometry for "one of the unbounded shapes".
+const UNBOUNDED: u32 = u32::MAX - 1;
+
+/// What is known where a ray meets the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Interaction<'a> {
+    /// The surface, in the world.
+    pub surface: SurfacePoint,
+    /// The light that the surface is, if it shines.
+    pub light: Option<Id<Light>>,
+    material: Id<Material>,
+    shape: &'a Shape,
+    hit: ShapeHit,
+}
+
+/// How many there are of what.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(missing_docs, reason = "plain counts")]
+pub struct Counts {
+    pub shapes: usize,
+    pub primitives: usize,
+    pub instances: usize,
+    pub groups: usize,
+    pub textures: usize,
+    pub materials: usize,
+    pub lights: usize,
+}
+
+impl Scene {
+    /// The nearest surface on a ray.
+    #[inline]
+    pub fn closest_hit(&self, ray: &Ray) -> Option<SceneHit> {
+        let hit = if self.has_alpha {
+            self.world.closest_hit(ray, &Lookup::<true>(self))
+        } else {
+            self.world.closest_hit(ray, &Lookup::<false>(self))
+        };
+        if self.unbounded.is_empty() { hit } else { self.with_unbounded(ray, hit) }
+    }
+
+    /// [`closest_hit`](Self::closest_hit) for many rays; a hit without a primitive where there is none.
+    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [SceneHit]) {
+        if self.has_alpha {
+            self.world.closest_hits(rays, hits, &Lookup::<true>(self));
+        } else {
+            self.world.closest_hits(rays, hits, &Lookup::<false>(self));
+        }
+        if !self.unbounded.is_empty() {
+            for (ray, hit) in rays.iter().zip(hits) {
+                *hit = self.with_unbounded(ray, hit.is_some().then_some(*hit)).unwrap_or(Hit::NONE);
+            }
+        }
+    }
+
+    /// Whether anything lies on a ray.
+    #[inline]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        let blocked = if self.has_alpha {
+            self.world.occluded(ray, &Lookup::<true>(self))
+        } else {
+            self.world.occluded(ray, &Lookup::<false>(self))
+        };
+        blocked || (!self.unbounded.is_empty() && self.with_unbounded(ray, None).is_some())
+    }
+
+    /// [`occluded`](Self::occluded) for many rays.
+    pub fn occluded_many(&self, rays: &[Ray], blocked: &mut [bool]) {
+        if self.has_alpha {
+            self.world.occluded_many(rays, blocked, &Lookup::<true>(self));
+        } else {
+            self.world.occluded_many(rays, blocked, &Lookup::<false>(self));
+        }
+        if !self.unbounded.is_empty() {
+            for (ray, blocked) in rays.iter().zip(blocked) {
+                *blocked = *blocked || self.with_unbounded(ray, None).is_some();
+            }
+        }
+    }
+
+    /// The nearer of a hit and those with shapes that have no box.
+    fn with_unbounded(&self, ray: &Ray, mut best: Option<Hit>) -> Option<Hit> {
+        for (i, object) in self.unbounded.iter().enumerate() {
+            let Object::Solid { shape, .. } = object else { continue };
+            let nearer = ray.until(best.map_or(ray.t_max, |hit| hit.t));
+            let Some(hit) = self.shapes[*shape].intersect(&nearer, 0) else { continue };
+            if self.is_there(object, &hit, ray) {
+                let (geometry, primitive) = (UNBOUNDED, i as u32);
+                best = Some(Hit {
+                    t: hit.t,
+                    u: hit.uv[0],
+                    v: hit.uv[1],
+                    primitive,
+                    geometry,
+                    instance: NO_INSTANCE,
+                });
+            }
+        }
+        best
+    }
+
+    /// Everything about the place of a hit.
+    #[inline]
+    pub fn interaction(&self, ray: &Ray, hit: &SceneHit) -> Interaction<'_> {
+        let local = ShapeHit { t: hit.t, primitive: hit.primitive, uv: [hit.u, hit.v] };
+        if hit.geometry == UNBOUNDED {
+            return self.solid(&self.unbounded[hit.primitive as usize], ray, local);
+        }
+        if hit.instance == NO_INSTANCE {
+            return self.solid(&self.levels[0][hit.geometry as usize], ray, local);
+        }
+        self.instanced(ray, hit, local)
+    }
+
+    fn instanced(&self, ray: &Ray, hit: &SceneHit, local: ShapeHit) -> Interaction<'_> {
+        let Object::Instance(instance) = &self.levels[0][hit.instance as usize] else {
+            unreachable!("the accelerator names instances by the geometries that are instances")
+        };
+        let place = &instance.world_from_object;
+        let object = &self.levels[instance.level as usize][hit.geometry as usize];
+        let inner = self.solid(object, &place.inverse().ray(ray), local);
+        Interaction { surface: inner.surface.transformed(place), ..inner }
+    }
+
+    #[inline]
+    fn solid(&self, object: &Object, ray: &Ray, hit: ShapeHit) -> Interaction<'_> {
+        let Object::Solid { shape, material, light, .. } = object else {
+            unreachable!("instances hold no hits of their own")
+        };
+        let shape = &self.shapes[*shape];
+        Interaction { surface: shape.surface(ray, &hit), light: *light, material: *material, shape, hit }
+    }
+
+    /// The scattering at a place, seen along unit `wo`.
+    #[inline]
+    pub fn bsdf(&self, at: &Interaction<'_>, wo: Vector3, wavelengths: Wavelengths) -> Bsdf {
+        let surface = &at.surface;
+        let texture = TextureContext {
+            textures: &self.textures,
+            wavelengths,
+            uv: surface.uv,
+            p: surface.p,
+            mesh: at.shape.mesh_point(&at.hit),
+        };
+        let context = MaterialContext {
+            texture,
+            materials: &self.materials,
+            frame: surface.frame,
+            ng: surface.ng,
+            dp_du: surface.dp_du,
+            dp_dv: surface.dp_dv,
+            wo,
+        };
+        let mut bsdf = Bsdf::new();
+        self.materials[at.material].evaluate(&context, 1.0, &mut bsdf);
+        bsdf
+    }
+
+    /// What lights may ask for.
+    #[inline]
+    pub fn light_context(&self, wavelengths: Wavelengths) -> LightContext<'_> {
+        LightContext { textures: &self.textures, shapes: &self.shapes, wavelengths }
+    }
+
+    /// Radiance that a place sends along unit `w` by itself.
+    #[inline]
+    pub fn emitted(&self, at: &Interaction<'_>, w: Vector3, wavelengths: Wavelengths) -> Spectrum {
+        match at.light {
+            Some(light) => self.lights[light].emitted(&self.light_context(wavelengths), &at.surface, w),
+            None => Spectrum::ZERO,
+        }
+    }
+
+    /// The lights that rays see when they leave the scene.
+    pub fn environments(&self) -> &[Id<Light>] {
+        &self.environments
+    }
+
+    /// The ray that decides whether a light sample is visible from a surface.
+    #[inline]
+    pub fn shadow_ray(&self, from: &SurfacePoint, sample: &LightSample, time: f32) -> Ray {
+        // The light's own surface is kept off by its own offset; the rest is for rounding of the direction.
+        const END: f32 = 1.0 - 1e-5;
+        let origin = offset_ray_origin(from.p, from.error, from.ng, sample.wi);
+        match sample.target {
+            Some(target) => Ray { time, ..Ray::new(origin, target - origin).until(END) },
+            None => Ray { time, ..Ray::new(origin, sample.wi) },
+        }
+    }
+
+    /// The box around everything that has one.
+    pub fn bounds(&self) -> Bounds3 {
+        self.world.bounds()
+    }
+
+    /// Figures about the acceleration of the top level.
+    pub fn accel_stats(&self) -> Stats {
+        self.world.stats()
+    }
+
+    /// How many there are of what.
+    pub fn counts(&self) -> Counts {
+        let is_instance = |object: &&Object| matches!(object, Object::Instance(_));
+        Counts {
+            shapes: self.shapes.len(),
+            primitives: self.shapes.iter().map(|(_, shape)| shape.primitive_count()).sum(),
+            instances: self.levels[0].iter().filter(is_instance).count(),
+            groups: self.levels.len() - 1,
+            textures: self.textures.len(),
+            materials: self.materials.len(),
+            lights: self.lights.len(),
+        }
+    }
+}
