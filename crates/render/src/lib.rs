@@ -1,1 +1,25 @@
 //! Integrators, film, passes, progress.
+//!
+//! ```
+//! use aureole_desc::{Report, SceneDesc};
+//! use aureole_render::{RenderOptions, Silent, render};
+//! use aureole_scene::{CompileOptions, compile};
+//!
+//! let mut desc = SceneDesc::default();
+//! desc.set("film.width", "8")?;
+//! desc.set("film.height", "8")?;
+//! let scene = compile(&desc, &CompileOptions::default(), &mut Report::default())?;
+//! let rendered = render(&scene, &RenderOptions { spp: Some(1), ..RenderOptions::default() }, &Silent)?;
+//! assert_eq!(rendered.image.width(), 8);
+//! # Ok::<(), aureole_desc::SceneError>(())
+//! ```
+
+#![forbid(unsafe_code)]
+
+mod film;
+pub mod integrator;
+mod render;
+
+pub use film::{ExactSum, FilmTile};
+pub use integrator::{Integrator, IntegratorManual, integrators};
+pub use render::{Observer, Progress, RenderOptions, RenderStats, Rendered, Silent, render};

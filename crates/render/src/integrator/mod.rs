@@ -1,0 +1,134 @@
+//! Light transport algorithms.
+
+mod ambient_occlusion;
+mod direct;
+mod lighting;
+mod path;
+mod raycast;
+mod views;
+mod whitted;
+
+use aureole_desc::{Node, ParamDoc, Params, Report, SceneError};
+use aureole_elements::sampler::SampleKey;
+use aureole_math::Ray;
+use aureole_scene::Scene;
+use aureole_spectrum::Spectrum;
+
+use path::PathState;
+
+/// Dimensions below this one belong to the camera: film, lens, time.
+pub const FIRST_FREE_DIMENSION: u32 = 3;
+
+/// A camera ray and the sample that it belongs to.
+#[derive(Clone, Copy, Debug)]
+pub struct PathStart {
+    /// The ray.
+    pub ray: Ray,
+    /// What random numbers are drawn from.
+    pub key: SampleKey,
+}
+
+/// Memory that integrators may use from batch to batch.
+#[derive(Default)]
+pub struct Batch {
+    path: PathState,
+    rays: u64,
+}
+
+impl Batch {
+    /// Lets an integrator work on a batch; returns the number of rays that were traced.
+    pub(crate) fn trace(
+        &mut self,
+        integrator: &dyn Integrator,
+        scene: &Scene,
+        starts: &[PathStart],
+        radiance: &mut [Spectrum],
+    ) -> u64 {
+        self.rays = 0;
+        integrator.trace(scene, starts, radiance, self);
+        self.rays
+    }
+}
+
+/// A light transport algorithm.
+pub trait Integrator: Send + Sync {
+    /// Estimates the radiance along each ray of a batch; `radiance` comes in black.
+    fn trace(&self, scene: &Scene, starts: &[PathStart], radiance: &mut [Spectrum], batch: &mut Batch);
+}
+
+/// An algorithm that is clearest one ray at a time.
+pub(crate) trait RayIntegrator: Send + Sync {
+    /// Estimates the radiance along a ray, counting the rays traced.
+    fn radiance(&self, scene: &Scene, start: &PathStart, rays: &mut u64) -> Spectrum;
+}
+
+/// Runs a [`RayIntegrator`] over batches.
+struct OneByOne<T>(T);
+
+impl<T: RayIntegrator> Integrator for OneByOne<T> {
+    fn trace(&self, scene: &Scene, starts: &[PathStart], radiance: &mut [Spectrum], batch: &mut Batch) {
+        for (start, radiance) in starts.iter().zip(radiance) {
+            *radiance = self.0.radiance(scene, start, &mut batch.rays);
+        }
+    }
+}
+
+/// An integrator's manual, as `aureole list` prints it.
+#[derive(Clone, Copy)]
+pub struct IntegratorManual {
+    /// The name.
+    pub kind: &'static str,
+    /// What it does.
+    pub summary: &'static str,
+    /// Its parameters.
+    pub params: &'static [ParamDoc],
+    build: fn(&mut Params) -> Result<Box<dyn Integrator>, SceneError>,
+}
+
+/// All integrators.
+pub fn integrators() -> &'static [IntegratorManual] {
+    const ALL: &[IntegratorManual] = &[
+        path::MANUAL,
+        direct::MANUAL,
+        whitted::MANUAL,
+        raycast::MANUAL,
+        ambient_occlusion::MANUAL,
+        views::NORMALS,
+        views::DEPTH,
+        views::UV,
+        views::ALBEDO,
+        views::PRIMITIVE_ID,
+    ];
+    ALL
+}
+
+/// The scene's integrator, or another one by name.
+pub(crate) fn build(scene: &Scene, name: Option<&str>) -> Result<Box<dyn Integrator>, SceneError> {
+    let Node { kind, params, span, family, .. } = &scene.integrator;
+    let kind = name.unwrap_or(kind);
+    let manual =
+        integrators().iter().find(|manual| manual.kind == kind).ok_or_else(|| SceneError::UnknownKind {
+            family: *family,
+            kind: kind.to_owned(),
+            known: integrators().iter().map(|manual| manual.kind.to_owned()).collect(),
+            at: *span,
+        })?;
+    (manual.build)(&mut params.clone())
+}
+
+/// Warns about parameters of the scene's integrator that it does not know.
+pub fn check_parameters(scene: &Scene, report: &mut Report) {
+    let node = &scene.integrator;
+    if let Some(manual) = integrators().iter().find(|manual| manual.kind == node.kind) {
+        let mut params = node.params.clone();
+        if (manual.build)(&mut params).is_ok() {
+            params.warn_unused(&format!("integrator `{}`", node.kind), manual.params, report);
+        }
+    }
+}
+
+/// How many segments a path may have; `max_depth` = -1 means any number.
+pub(crate) fn max_depth(params: &mut Params) -> Result<u32, SceneError> {
+    let depth = params.int_in("max_depth", -1, -1, i64::from(u32::MAX) - 1)?;
+    Ok(u32::try_from(depth).unwrap_or(u32::MAX - 1))
+}

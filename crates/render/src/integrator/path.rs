@@ -1,0 +1,239 @@
+//! `path`: path tracing with next-event estimation, multiple importance sampling and Russian roulette.
+//!
+//! A batch of paths is advanced stage by stage: all rays are traced, all hits shaded, all shadow rays traced. Finished
+//! paths drop out, so that what is left stays together in memory.
+//!
+//! References: [Kajiya 1986] "The Rendering Equation"; [Veach 1997] "Robust Monte Carlo Methods for Light Transport
+//! Simulation".
+
+use aureole_desc::{ParamDoc, Params, SceneError};
+use aureole_elements::bsdf::TransportMode;
+use aureole_math::{Point3, Ray};
+use aureole_scene::{Interaction, Scene, SceneHit};
+use aureole_spectrum::{Spectrum, Wavelengths};
+
+use super::lighting::{LightNumbers, Weighting, environment, light_pdf, power_heuristic, sample_light};
+use super::{Batch, FIRST_FREE_DIMENSION, Integrator, IntegratorManual, PathStart, max_depth};
+
+pub(super) const MANUAL: IntegratorManual = IntegratorManual {
+    kind: "path",
+    summary: "Path tracing with next-event estimation, multiple importance sampling and Russian roulette.",
+    params: &[
+        ParamDoc {
+            name: "max_depth",
+            ty: "int",
+            default: "-1",
+            doc: "longest path in segments; -1 for any length",
+        },
+        ParamDoc {
+            name: "rr_depth",
+            ty: "int",
+            default: "5",
+            doc: "segments before Russian roulette starts",
+        },
+        ParamDoc {
+            name: "hide_emitters",
+            ty: "bool",
+            default: "false",
+            doc: "lights are not seen by the camera itself",
+        },
+    ],
+    build: |params| Ok(Box::new(Path::from_params(params)?)),
+};
+
+struct Path {
+    max_depth: u32,
+    rr_depth: u32,
+    hide_emitters: bool,
+}
+
+/// A path between two surfaces.
+#[derive(Clone, Copy)]
+struct Segment {
+    throughput: Spectrum,
+    /// Where the segment starts, for densities of light samples.
+    reference: Point3,
+    /// Density of its direction; infinite when no light sample could have found what it finds.
+    pdf_omega: f32,
+    /// Product of the relative indices of refraction so far, for Russian roulette.
+    eta: f32,
+    /// The path's place in the batch.
+    path: u32,
+}
+
+/// A shadow ray's path and what it may add.
+#[derive(Clone, Copy)]
+struct Pending {
+    path: u32,
+    contribution: Spectrum,
+}
+
+/// The state of a batch, kept to spare allocations.
+#[derive(Default)]
+pub(super) struct PathState {
+    rays: Vec<Ray>,
+    segments: Vec<Segment>,
+    hits: Vec<SceneHit>,
+    next_rays: Vec<Ray>,
+    next_segments: Vec<Segment>,
+    shadow_rays: Vec<Ray>,
+    pending: Vec<Pending>,
+    blocked: Vec<bool>,
+}
+
+/// Random numbers of one bounce, by dimension.
+const LIGHT_CHOICE: u32 = 0;
+const LIGHT_PLACE: u32 = 1;
+const LOBE: u32 = 2;
+const DIRECTION: u32 = 3;
+const ROULETTE: u32 = 4;
+const PER_BOUNCE: u32 = 5;
+
+impl Path {
+    fn from_params(params: &mut Params) -> Result<Self, SceneError> {
+        Ok(Self {
+            max_depth: max_depth(params)?,
+            rr_depth: params.int_in("rr_depth", 5, 0, i64::from(u32::MAX))? as u32,
+            hide_emitters: params.bool("hide_emitters", false)?,
+        })
+    }
+
+    /// Adds what a segment found, and continues its path from there.
+    fn shade(
+        &self,
+        scene: &Scene,
+        starts: &[PathStart],
+        radiance: &mut [Spectrum],
+        state: &mut PathState,
+        i: usize,
+        depth: u32,
+    ) {
+        let (ray, segment, hit) = (state.rays[i], state.segments[i], state.hits[i]);
+        let found = &mut radiance[segment.path as usize];
+        let is_visible = depth > 0 || !self.hide_emitters;
+        if !hit.is_some() {
+            if is_visible {
+                let weight = |pdf: f32| power_heuristic(segment.pdf_omega, pdf);
+                *found += segment.throughput * environment(scene, segment.reference, ray.direction, weight);
+            }
+            return;
+        }
+        let at = scene.interaction(&ray, &hit);
+        if at.light.is_some() && is_visible {
+            let emitted = scene.emitted(&at, -ray.direction, Wavelengths::RGB);
+            if !emitted.is_black() {
+                let pdf = light_pdf(scene, segment.reference, ray.direction, &at);
+                *found += segment.throughput * emitted * power_heuristic(segment.pdf_omega, pdf);
+            }
+        }
+        if depth + 1 < self.max_depth {
+            self.scatter(scene, &starts[segment.path as usize], state, &ray, segment, &at, depth);
+        }
+    }
+
+    /// Draws a light sample and the path's next direction.
+    #[expect(clippy::too_many_arguments, reason = "the state of one path at one surface")]
+    fn scatter(
+        &self,
+        scene: &Scene,
+        start: &PathStart,
+        state: &mut PathState,
+        ray: &Ray,
+        segment: Segment,
+        at: &Interaction<'_>,
+        depth: u32,
+    ) {
+        let wo = -ray.direction;
+        let (sampler, key) = (&scene.sampler, start.key);
+        let dimension = FIRST_FREE_DIMENSION + depth * PER_BOUNCE;
+        let bsdf = scene.bsdf(at, wo, Wavelengths::RGB);
+        if bsdf.is_smooth() {
+            let numbers = LightNumbers {
+                choice: sampler.get_1d(key, dimension + LIGHT_CHOICE),
+                place: sampler.get_2d(key, dimension + LIGHT_PLACE),
+            };
+            let weighting = Weighting::Against { lights: 1, bsdfs: 1 };
+            if let Some(light) = sample_light(scene, at, &bsdf, wo, numbers, weighting, ray.time) {
+                let contribution = segment.throughput * light.contribution;
+                state.shadow_rays.push(light.ray);
+                state.pending.push(Pending { path: segment.path, contribution });
+            }
+        }
+        let lobe = sampler.get_1d(key, dimension + LOBE);
+        let direction = sampler.get_2d(key, dimension + DIRECTION);
+        let Some(drawn) = bsdf.sample(wo, lobe, direction, TransportMode::Radiance) else { return };
+        let mut throughput = segment.throughput * drawn.weight;
+        let eta = segment.eta * drawn.eta;
+        if depth + 1 >= self.rr_depth {
+            // Refraction squeezes radiance, but a path that will leave the glass again is not weaker for it.
+            let survival = (throughput.max_element() * eta * eta).min(0.95);
+            if sampler.get_1d(key, dimension + ROULETTE) >= survival {
+                return;
+            }
+            throughput = throughput / survival;
+        }
+        state.next_rays.push(at.surface.spawn_ray(drawn.wi, ray.time));
+        state.next_segments.push(Segment {
+            throughput,
+            reference: at.surface.p,
+            pdf_omega: if drawn.flags.delta { f32::INFINITY } else { drawn.pdf_omega },
+            eta,
+            path: segment.path,
+        });
+    }
+}
+
+impl PathState {
+    fn begin(&mut self, starts: &[PathStart]) {
+        self.rays.clear();
+        self.segments.clear();
+        for (i, start) in starts.iter().enumerate() {
+            self.rays.push(start.ray);
+            self.segments.push(Segment {
+                throughput: Spectrum::ONE,
+                reference: start.ray.origin,
+                pdf_omega: f32::INFINITY,
+                eta: 1.0,
+                path: i as u32,
+            });
+        }
+    }
+
+    /// Traces the shadow rays and adds what arrives.
+    fn light(&mut self, scene: &Scene, radiance: &mut [Spectrum]) {
+        self.blocked.clear();
+        self.blocked.resize(self.shadow_rays.len(), false);
+        scene.occluded_many(&self.shadow_rays, &mut self.blocked);
+        for (pending, blocked) in self.pending.iter().zip(&self.blocked) {
+            if !blocked {
+                radiance[pending.path as usize] += pending.contribution;
+            }
+        }
+        self.shadow_rays.clear();
+        self.pending.clear();
+    }
+}
+
+impl Integrator for Path {
+    fn trace(&self, scene: &Scene, starts: &[PathStart], radiance: &mut [Spectrum], batch: &mut Batch) {
+        let state = &mut batch.path;
+        state.begin(starts);
+        let mut depth = 0;
+        while !state.rays.is_empty() && depth < self.max_depth {
+            state.hits.clear();
+            state.hits.resize(state.rays.len(), SceneHit::NONE);
+            scene.closest_hits(&state.rays, &mut state.hits);
+            batch.rays += state.rays.len() as u64;
+            for i in 0..state.rays.len() {
+                self.shade(scene, starts, radiance, state, i, depth);
+            }
+            batch.rays += state.shadow_rays.len() as u64;
+            state.light(scene, radiance);
+            std::mem::swap(&mut state.rays, &mut state.next_rays);
+            std::mem::swap(&mut state.segments, &mut state.next_segments);
+            state.next_rays.clear();
+            state.next_segments.clear();
+            depth += 1;
+        }
+    }
+}
