@@ -101,6 +101,13 @@ impl SearchPath {
         self.folders.insert(0, folder);
     }
 
+    /// Adds a folder after all others.
+    pub fn push_back(&mut self, folder: PathBuf) {
+        if !self.folders.contains(&folder) {
+            self.folders.push(folder);
+        }
+    }
+
     /// The first existing file of that name; when there is none, where it was expected first.
     ///
     /// Backslashes, which scenes written on Windows have, count as slashes where no file of the literal name exists.

@@ -42,7 +42,7 @@ pub struct Context<'a> {
 }
 
 /// All formats.
-pub const FORMATS: &[Format] = &[];
+pub const FORMATS: &[Format] = &[crate::mitsuba::FORMAT];
 
 /// All suffixes, for messages.
 pub fn known_suffixes() -> Vec<String> {

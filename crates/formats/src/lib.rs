@@ -18,6 +18,7 @@
 pub mod file;
 mod format;
 pub mod mesh;
+mod mitsuba;
 
 use std::path::Path;
 

@@ -1,0 +1,90 @@
+//! Materials.
+
+use aureole_desc::{Family, NodeId, SceneError, Value};
+use aureole_spectrum::SpectrumSource;
+
+use super::scope::Scope;
+use super::translate::Translator;
+use super::tree::Tag;
+
+/// Mitsuba's plugins and Aureole's words for them. Not all of the latter can be rendered yet.
+const KINDS: &[(&str, &str)] = &[
+    ("diffuse", "diffuse"),
+    ("conductor", "conductor"),
+    ("roughconductor", "rough_conductor"),
+    ("dielectric", "dielectric"),
+    ("thindielectric", "thin_dielectric"),
+    ("roughdielectric", "rough_dielectric"),
+    ("plastic", "plastic"),
+    ("roughplastic", "rough_plastic"),
+    ("difftrans", "diffuse_transmission"),
+    ("twosided", "two_sided"),
+    ("mask", "mask"),
+    ("blendbsdf", "blend"),
+    ("bumpmap", "bump"),
+    ("normalmap", "normal_map"),
+    ("null", "null"),
+    ("principled", "principled"),
+    ("principledthin", "principled_thin"),
+    ("hair", "hair"),
+    ("measured", "measured"),
+    ("measured_polarized", "measured_polarized"),
+    ("pplastic", "plastic"),
+    ("polarizer", "polarizer"),
+    ("retarder", "retarder"),
+    ("circular", "circular_polarizer"),
+];
+
+pub(super) fn translate<'a>(
+    t: &mut Translator<'a, '_, '_>,
+    mut scope: Scope<'a>,
+) -> Result<NodeId, SceneError> {
+    let kind = t.kind(&scope, Family::Bsdf, KINDS)?;
+    // How normals are sampled changes noise, not pictures.
+    scope.ignore(&["sample_visible"]);
+    match scope.object.plugin.as_str() {
+        "conductor" => metal(&mut scope),
+        "roughconductor" => {
+            metal(&mut scope);
+            scope.default("distribution", word("beckmann"));
+        }
+        "roughdielectric" | "roughplastic" => scope.default("distribution", word("beckmann")),
+        "pplastic" => {
+            let message = "`pplastic` is rendered as `plastic`: polarisation is not carried";
+            t.context.report.warn(message, scope.span());
+        }
+        "measured" | "measured_polarized" => t.put_path(&mut scope)?,
+        "twosided" => {
+            t.put_required(&mut scope, "bsdf", Tag::Bsdf)?;
+            if let Some(back) = scope.take_child(&[Tag::Bsdf]) {
+                t.put(&mut scope, "back", back)?;
+            }
+        }
+        "mask" => t.put_required(&mut scope, "bsdf", Tag::Bsdf)?,
+        "blendbsdf" => {
+            t.put_required(&mut scope, "a", Tag::Bsdf)?;
+            t.put_required(&mut scope, "b", Tag::Bsdf)?;
+        }
+        "bumpmap" | "normalmap" => {
+            t.put_required(&mut scope, "texture", Tag::Texture)?;
+            t.put_required(&mut scope, "bsdf", Tag::Bsdf)?;
+        }
+        _ => {}
+    }
+    t.finish(scope, Family::Bsdf, kind)
+}
+
+fn word(text: &str) -> Value {
+    Value::String(text.to_owned())
+}
+
+/// Mitsuba's metals are perfect mirrors unless a name or an index is given, and a missing half of the index is 0 or 1.
+fn metal(scope: &mut Scope<'_>) {
+    let uniform = |x| Value::Spectrum(SpectrumSource::Uniform(x));
+    if scope.has("eta") || scope.has("k") {
+        scope.default("eta", uniform(0.0));
+        scope.default("k", uniform(1.0));
+    } else {
+        scope.default("material", word("none"));
+    }
+}

@@ -1,0 +1,58 @@
+//! Lights.
+
+use aureole_desc::{Family, NodeId, SceneError, Value};
+
+use super::scope::Scope;
+use super::sensor;
+use super::translate::Translator;
+use super::tree::ObjectId;
+
+/// Mitsuba's plugins and Aureole's words for them. Not all of the latter can be rendered yet.
+const KINDS: &[(&str, &str)] = &[
+    ("area", "area"),
+    ("point", "point"),
+    ("spot", "spot"),
+    ("directional", "directional"),
+    ("directionalarea", "directional_area"),
+    ("constant", "constant"),
+    ("envmap", "envmap"),
+    ("projector", "projector"),
+    ("sunsky", "sunsky"),
+    ("timed_sunsky", "timed_sunsky"),
+    ("sky", "sky"),
+    ("sun", "sun"),
+];
+
+/// Adds a light of the scene. Area lights shine only from a shape that refers to them.
+pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), SceneError> {
+    if matches!(t.tree.get(id).plugin.as_str(), "area" | "directionalarea") {
+        return Ok(());
+    }
+    if let Value::Node(light) = t.value(id)? {
+        t.scene.lights.push(light);
+    }
+    Ok(())
+}
+
+pub(super) fn translate<'a>(
+    t: &mut Translator<'a, '_, '_>,
+    mut scope: Scope<'a>,
+) -> Result<NodeId, SceneError> {
+    let kind = t.kind(&scope, Family::Light, KINDS)?;
+    scope.rename("to_world", "world_from_light");
+    // How often a light is picked changes noise, not pictures.
+    scope.ignore(&["sampling_weight"]);
+    match kind {
+        "point" if scope.has("position") && scope.has("world_from_light") => {
+            let at = scope.values.span("position");
+            return Err(SceneError::invalid("a point light has either `position` or `to_world`", at));
+        }
+        "envmap" => {
+            t.put_path(&mut scope)?;
+            scope.out.push("mapping", Value::String("latlong".to_owned()), scope.span());
+        }
+        "projector" => sensor::field_of_view(&mut scope)?,
+        _ => {}
+    }
+    t.finish(scope, Family::Light, kind)
+}

@@ -1,0 +1,203 @@
+//! Shapes.
+
+use std::sync::Arc;
+
+use aureole_desc::{Family, Mesh, Node, NodeId, Params, SceneError, Span, Value};
+use aureole_spectrum::SpectrumSource;
+
+use super::scope::Scope;
+use super::translate::{MeshKey, Translator};
+use super::tree::{ObjectId, Tag};
+use crate::mesh::{add_smooth_normals, obj, ply, serialized, vol};
+
+/// Mitsuba's plugins and Aureole's words for them. Not all of the latter can be rendered yet.
+const KINDS: &[(&str, &str)] = &[
+    ("sphere", "sphere"),
+    ("disk", "disk"),
+    ("rectangle", "rectangle"),
+    ("cube", "cube"),
+    ("cylinder", "cylinder"),
+    ("obj", "mesh"),
+    ("ply", "mesh"),
+    ("serialized", "mesh"),
+    ("shapegroup", "group"),
+    ("instance", "instance"),
+    ("merge", "merge"),
+    ("sdfgrid", "sdf_grid"),
+    ("bsplinecurve", "bspline_curve"),
+    ("linearcurve", "linear_curve"),
+    ("ellipsoids", "ellipsoids"),
+    ("ellipsoidsmesh", "ellipsoids"),
+];
+
+/// Adds a shape of the scene. Groups appear only by their instances; merged shapes are shapes like others.
+pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), SceneError> {
+    let mut shapes = Vec::new();
+    gather(t, id, &mut shapes, 0)?;
+    t.scene.shapes.extend(shapes);
+    Ok(())
+}
+
+/// The nodes of a shape, several for `merge`.
+fn gather(
+    t: &mut Translator<'_, '_, '_>,
+    id: ObjectId,
+    shapes: &mut Vec<NodeId>,
+    depth: usize,
+) -> Result<(), SceneError> {
+    let tree = t.tree;
+    let object = tree.get(id);
+    match object.plugin.as_str() {
+        "shapegroup" => Ok(()),
+        "merge" if depth > t.context.options.limits.max_nesting => {
+            Err(SceneError::invalid("`merge` contains itself", object.span))
+        }
+        "merge" => {
+            let children = Scope::new(tree, object)?.children;
+            let mut inner = children.iter().filter(|child| child.tag == Tag::Shape);
+            inner.try_for_each(|child| gather(t, child.id, shapes, depth + 1))
+        }
+        _ => {
+            if let Value::Node(shape) = t.value(id)? {
+                shapes.push(shape);
+            }
+            Ok(())
+        }
+    }
+}
+
+pub(super) fn translate<'a>(
+    t: &mut Translator<'a, '_, '_>,
+    mut scope: Scope<'a>,
+) -> Result<NodeId, SceneError> {
+    let kind = t.kind(&scope, Family::Shape, KINDS)?;
+    scope.rename("to_world", "world_from_object");
+    // For derivatives only.
+    scope.ignore(&["silhouette_sampling_weight"]);
+    match kind {
+        "group" => return group(t, scope),
+        "instance" => {
+            let group = scope.take_child(&[Tag::Shape]);
+            let group = group.ok_or_else(|| scope.missing("shapegroup", "a nested group or <ref>"))?;
+            if t.tree.get(group.id).plugin != "shapegroup" {
+                return Err(SceneError::invalid("an instance needs a `shapegroup`", group.span));
+            }
+            t.put(&mut scope, "group", group)?;
+        }
+        "mesh" => mesh(t, &mut scope)?,
+        "sdf_grid" => sdf_grid(t, &mut scope)?,
+        "bspline_curve" | "linear_curve" | "ellipsoids" if scope.has("filename") => t.put_path(&mut scope)?,
+        _ => {}
+    }
+    surface(t, &mut scope)?;
+    t.finish(scope, Family::Shape, kind)
+}
+
+/// What a shape is made of, whether it shines, and what it encloses.
+fn surface<'a>(t: &mut Translator<'a, '_, '_>, scope: &mut Scope<'a>) -> Result<(), SceneError> {
+    let emitter = scope.take_child(&[Tag::Emitter]);
+    if let Some(emitter) = emitter {
+        t.put(scope, "emission", emitter)?;
+    }
+    match scope.take_child(&[Tag::Bsdf]) {
+        Some(bsdf) => t.put(scope, "bsdf", bsdf)?,
+        // A light without a material reflects nothing in Mitsuba.
+        None if emitter.is_some() => {
+            let black = Value::Spectrum(SpectrumSource::Uniform(0.0));
+            let params = Params::new().with("reflectance", black);
+            let node = t.scene.add(Node::new(Family::Bsdf, "diffuse", params, scope.span()));
+            scope.out.push("bsdf", Value::Node(node), scope.span());
+        }
+        None => {}
+    }
+    for side in ["interior", "exterior"] {
+        if let Some(medium) = scope.take_named(side) {
+            t.put(scope, side, medium)?;
+        }
+    }
+    Ok(())
+}
+
+fn group<'a>(t: &mut Translator<'a, '_, '_>, mut scope: Scope<'a>) -> Result<NodeId, SceneError> {
+    let mut shapes = Vec::new();
+    while let Some(child) = scope.take_child(&[Tag::Shape]) {
+        gather(t, child.id, &mut shapes, 0)?;
+    }
+    if shapes.is_empty() {
+        return Err(scope.missing("shape", "at least one shape inside"));
+    }
+    scope.out.push("shapes", Value::Nodes(shapes), scope.span());
+    t.finish(scope, Family::Shape, "group")
+}
+
+/// Reads a mesh file, once for all shapes that want it in the same way.
+fn mesh(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(), SceneError> {
+    let (path, at) = t.path(scope, "filename")?;
+    let plugin = scope.object.plugin.as_str();
+    let index = match scope.int("shape_index")? {
+        Some(index) => usize::try_from(index)
+            .map_err(|_| SceneError::invalid("`shape_index` is negative", scope.span()))?,
+        None => 0,
+    };
+    let face_normals = scope.bool("face_normals", false)?;
+    // Mitsuba turns the texture coordinates of OBJ files round, unless told not to.
+    let flip_v = scope.bool("flip_tex_coords", plugin == "obj")?;
+    scope.ignore(&["max_smooth_angle", "srgb", "collapse", "fold"]);
+
+    let key: MeshKey = (path, index, flip_v, face_normals);
+    let mesh = match t.meshes.get(&key) {
+        Some(mesh) => mesh.clone(),
+        None => {
+            let mesh = Arc::new(read_mesh(t, plugin, &key, at)?);
+            t.meshes.insert(key, mesh.clone());
+            mesh
+        }
+    };
+    scope.out.push("mesh", Value::Mesh(mesh), at);
+    if face_normals {
+        scope.out.push("face_normals", Value::Bool(true), scope.span());
+    }
+    Ok(())
+}
+
+fn read_mesh(
+    t: &Translator<'_, '_, '_>,
+    plugin: &str,
+    (path, index, flip_v, face_normals): &MeshKey,
+    at: Span,
+) -> Result<Mesh, SceneError> {
+    let limits = &t.context.options.limits;
+    let mut face_normals = *face_normals;
+    let mut mesh = match plugin {
+        "obj" => obj::read(path, limits, at)?,
+        "ply" => ply::read(path, limits, at)?,
+        _ => {
+            let read = serialized::read(path, *index, limits, at)?;
+            face_normals |= read.face_normals;
+            read.mesh
+        }
+    };
+    if *flip_v {
+        mesh.uvs.iter_mut().for_each(|[_, v]| *v = 1.0 - *v);
+    }
+    // Meshes are smooth in Mitsuba unless they are told to be flat.
+    if face_normals {
+        mesh.normals.clear();
+    } else if mesh.normals.is_empty() {
+        add_smooth_normals(&mut mesh);
+    }
+    Ok(mesh)
+}
+
+/// A grid of signed distances, with its values.
+fn sdf_grid(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(), SceneError> {
+    let (path, at) = t.path(scope, "filename")?;
+    let grid = vol::read(&path, &t.context.options.limits, at)?;
+    if grid.channels != 1 {
+        let message = format!("signed distances have one channel, this file has {}", grid.channels);
+        return Err(SceneError::Asset { path, message, at });
+    }
+    scope.out.push("values", Value::Floats(grid.values), at);
+    scope.out.push("resolution", Value::Ints(grid.resolution.map(|n| n as i32).as_slice().into()), at);
+    Ok(())
+}
