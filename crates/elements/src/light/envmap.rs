@@ -34,7 +34,8 @@ impl Mapping {
         match self {
             Self::LatLong => {
                 let u = warp::azimuth(w.x, -w.z) / TAU;
-                Point2::new(u, w.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI)
+                // The arc tangent keeps its digits at the poles, where densities have none to spare.
+                Point2::new(u, w.x.hypot(w.z).atan2(w.y) * FRAC_1_PI)
             }
             Self::EqualArea => warp::square_from_sphere_equal_area(w),
         }

@@ -1,6 +1,6 @@
 //! Pearson's statistic over cells, small ones pooled.
 
-use super::{Chi2Config, Chi2Error, Chi2Outcome, QUADRATURE_TOLERANCE};
+use super::{Chi2Config, Chi2Error, Chi2Outcome, quadrature_tolerance};
 use crate::{Rect, chi2_survival, sidak};
 
 /// Tests counts against expected counts of the same sum, for a domain that is a list of choices.
@@ -17,8 +17,9 @@ pub fn chi2_counts(
 /// Share of the draws below which a cell counts as one where the density is zero; small enough that the many cells
 /// in the tail of a peak still expect none in all.
 const ZERO_SHARE: f64 = 1e-9;
-/// Share of the draws that may fall in such cells: a density may be exactly zero one ulp beside a draw.
-const FORGIVEN_SHARE: f64 = 1e-5;
+/// Share of the draws that may fall in such cells: a density may be exactly zero one ulp beside a draw, and the
+/// quadrature overlooks what is smaller than a hundredth of a cell.
+const FORGIVEN_SHARE: f64 = 5e-5;
 
 /// Cells taken together until they expect enough draws.
 #[derive(Clone, Copy, Default)]
@@ -57,7 +58,7 @@ pub(super) fn compare(
     let (mut open, mut misplaced) = (Pool::default(), 0.0);
     for cell in order {
         // The share of refused draws is a difference, and so as uncertain as the quadrature.
-        let zero = if rect(cell).is_some() { ZERO_SHARE } else { QUADRATURE_TOLERANCE };
+        let zero = if rect(cell).is_some() { ZERO_SHARE } else { quadrature_tolerance(total) };
         if expected[cell] <= zero * total {
             misplaced += observed[cell];
             if misplaced > FORGIVEN_SHARE * total {

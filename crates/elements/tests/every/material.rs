@@ -1,0 +1,289 @@
+//! Materials: draws follow their density and value, no energy is made, light may walk either way.
+
+use aureole_desc::{Family, Value};
+use aureole_elements::bsdf::{Bsdf, BsdfSample, MaterialContext, TransportMode};
+use aureole_elements::{Material, TextureContext};
+use aureole_math::{Frame, Id, Pcg32, Point2, Point3, Vector3, spherical_direction, warp};
+use aureole_spectrum::Wavelengths;
+use aureole_testkit::{Chi2Config, chi2_sphere, furnace, worst_asymmetry};
+
+use crate::world::{World, rgb, word};
+
+use TransportMode::{Importance, Radiance};
+use Value::Float;
+
+/// A material to test.
+struct Example {
+    label: &'static str,
+    material: Id<Material>,
+    /// Whether f(wo, wi) = f*(wi, wo) can be asked: bent normals measure cosines elsewhere.
+    is_reciprocal: bool,
+}
+
+/// Materials of every kind.
+fn examples(world: &mut World) -> Vec<Example> {
+    let bsdf = Family::Bsdf;
+    let diffuse = world.add(bsdf, "diffuse", [("reflectance", rgb(0.8, 0.5, 0.2))]);
+    let ggx = world.add(
+        bsdf,
+        "rough_conductor",
+        [("material", word("Cu")), ("distribution", word("ggx")), ("alpha", Float(0.3))],
+    );
+    let beckmann = world.add(
+        bsdf,
+        "rough_conductor",
+        [
+            ("material", word("none")),
+            ("distribution", word("beckmann")),
+            ("alpha_u", Float(0.15)),
+            ("alpha_v", Float(0.5)),
+        ],
+    );
+    let glass = world.add(bsdf, "dielectric", []);
+    let frosted = |world: &mut World, distribution: &str, alpha: f64, int_ior: f64, ext_ior: f64| {
+        world.add(
+            bsdf,
+            "rough_dielectric",
+            [
+                ("distribution", word(distribution)),
+                ("alpha", Float(alpha)),
+                ("int_ior", Float(int_ior)),
+                ("ext_ior", Float(ext_ior)),
+            ],
+        )
+    };
+    let plastic = world.add(bsdf, "plastic", [("diffuse_reflectance", rgb(0.7, 0.3, 0.1))]);
+    let lacquer = world.add(bsdf, "rough_plastic", [("distribution", word("ggx")), ("alpha", Float(0.25))]);
+    let slope =
+        world.add(Family::Texture, "bilerp", [("v01", rgb(0.0, 0.0, 0.0)), ("v10", rgb(0.4, 0.4, 0.4))]);
+    let bent = world.add(Family::Texture, "constant", [("value", rgb(0.65, 0.4, 0.9))]);
+
+    let list = [
+        ("diffuse", true, diffuse.clone()),
+        ("conductor", true, world.add(bsdf, "conductor", [("material", word("Au"))])),
+        ("ggx conductor", true, ggx.clone()),
+        ("anisotropic beckmann conductor", true, beckmann.clone()),
+        ("dielectric", true, glass.clone()),
+        ("thin dielectric", true, world.add(bsdf, "thin_dielectric", [])),
+        ("ggx dielectric", true, frosted(world, "ggx", 0.3, 1.5, 1.0)),
+        ("beckmann dielectric", true, frosted(world, "beckmann", 0.2, 1.33, 1.0)),
+        ("air bubble", true, frosted(world, "ggx", 0.4, 1.0, 1.5)),
+        ("plastic", true, plastic.clone()),
+        ("nonlinear plastic", true, {
+            world.add(
+                bsdf,
+                "plastic",
+                [("diffuse_reflectance", Float(0.9)), ("nonlinear", Value::Bool(true))],
+            )
+        }),
+        ("rough plastic", true, lacquer.clone()),
+        ("diffuse transmission", true, {
+            world.add(
+                bsdf,
+                "diffuse_transmission",
+                [("reflectance", rgb(0.5, 0.3, 0.2)), ("transmittance", rgb(0.1, 0.4, 0.3))],
+            )
+        }),
+        ("two-sided plastic", true, world.add(bsdf, "two_sided", [("bsdf", plastic.clone())])),
+        ("two-faced", true, world.add(bsdf, "two_sided", [("bsdf", ggx.clone()), ("back", diffuse.clone())])),
+        ("mask", true, world.add(bsdf, "mask", [("opacity", Float(0.4)), ("bsdf", ggx.clone())])),
+        ("blend", true, {
+            world.add(bsdf, "blend", [("weight", Float(0.3)), ("a", diffuse.clone()), ("b", beckmann)])
+        }),
+        ("blend with glass", true, {
+            world.add(bsdf, "blend", [("weight", Float(0.6)), ("a", lacquer), ("b", glass)])
+        }),
+        ("null", true, world.add(bsdf, "null", [])),
+        ("bump", false, { world.add(bsdf, "bump", [("texture", slope), ("bsdf", diffuse)]) }),
+        ("normal map", false, world.add(bsdf, "normal_map", [("texture", bent), ("bsdf", ggx)])),
+    ];
+    let example = |(label, is_reciprocal, node): (_, _, Value)| Example {
+        label,
+        material: world.material_of(&node),
+        is_reciprocal,
+    };
+    list.into_iter().map(example).collect()
+}
+
+/// A material at a point seen from `wo`.
+fn bsdf_at(world: &World, material: Id<Material>, frame: Frame, wo: Vector3) -> Bsdf {
+    let texture = TextureContext {
+        textures: &world.textures,
+        wavelengths: Wavelengths::RGB,
+        uv: Point2::new(0.4, 0.6),
+        p: Point3::ORIGIN,
+        mesh: None,
+    };
+    let at = MaterialContext {
+        texture,
+        materials: &world.materials,
+        frame,
+        ng: frame.n,
+        dp_du: frame.s,
+        dp_dv: frame.t,
+        wo,
+    };
+    let mut bsdf = Bsdf::new();
+    world.materials[material].evaluate(&at, 1.0, &mut bsdf);
+    bsdf
+}
+
+const UPRIGHT: Frame = Frame { s: Vector3::X, t: Vector3::Y, n: Vector3::Z };
+
+/// Views from straight above to nearly grazing, and from below.
+fn views() -> impl Iterator<Item = Vector3> {
+    [2.0_f32, 30.0, 60.0, 84.0, 115.0, 160.0]
+        .into_iter()
+        .map(|theta| spherical_direction(theta.to_radians(), 0.7))
+}
+
+fn draw(bsdf: &Bsdf, wo: Vector3, mode: TransportMode, rng: &mut Pcg32) -> Option<BsdfSample> {
+    bsdf.sample(wo, rng.next_f32(), rng.point2(), mode)
+}
+
+#[test]
+fn every_kind_has_an_example() {
+    let mut world = World::default();
+    examples(&mut world);
+    world.assert_complete(Family::Bsdf, Material::KINDS);
+}
+
+/// All tests together raise a false alarm in one of a hundred seeds.
+#[test]
+fn draws_follow_their_density() {
+    let mut world = World::default();
+    let examples = examples(&mut world);
+    let test_count = examples.len() * views().count();
+    let config = Chi2Config { sample_count: 100_000, test_count, ..Chi2Config::default() };
+    let mut failures = Vec::new();
+    for example in &examples {
+        for wo in views() {
+            let bsdf = bsdf_at(&world, example.material, UPRIGHT, wo);
+            if !bsdf.is_smooth() {
+                continue;
+            }
+            let sample =
+                |rng: &mut Pcg32| draw(&bsdf, wo, Radiance, rng).filter(|s| !s.flags.delta).map(|s| s.wi);
+            if views().all(|wi| bsdf.pdf_omega(wo, wi) == 0.0) {
+                // Black from this side: nothing may be drawn.
+                let mut rng = Pcg32::new(1);
+                assert!((0..1000).all(|_| sample(&mut rng).is_none()), "{}: {wo:?}", example.label);
+                continue;
+            }
+            if let Err(error) = chi2_sphere(&config, sample, |wi| bsdf.pdf_omega(wo, wi)) {
+                failures.push(format!("{} from {wo:?}: {error}", example.label));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn weights_are_value_over_density() {
+    let mut world = World::default();
+    let mut rng = Pcg32::new(2);
+    for example in examples(&mut world) {
+        for mode in [Radiance, Importance] {
+            for wo in views() {
+                let bsdf = bsdf_at(&world, example.material, UPRIGHT, wo);
+                for _ in 0..500 {
+                    let Some(s) = draw(&bsdf, wo, mode, &mut rng).filter(|s| !s.flags.delta) else {
+                        continue;
+                    };
+                    let (value, pdf) = (bsdf.eval_cos(wo, s.wi, mode), bsdf.pdf_omega(wo, s.wi));
+                    assert!((s.wi.length() - 1.0).abs() < 1e-4, "{}: {s:?}", example.label);
+                    assert!((s.pdf_omega / pdf - 1.0).abs() < 1e-2, "{}: {pdf} {s:?}", example.label);
+                    let error = (s.weight - value / pdf).map(f32::abs).max_element();
+                    assert!(error < 1e-2 * s.weight.max_element(), "{}: {s:?}", example.label);
+                    assert_eq!(s.flags.transmission, s.wi.dot(Vector3::Z) * wo.z < 0.0, "{}", example.label);
+                }
+            }
+        }
+    }
+}
+
+/// Importance keeps its energy across boundaries, radiance is squeezed: the furnace holds importance. A material that
+/// returns everything fails in fewer than one of ten thousand seeds.
+#[test]
+fn no_energy_is_made() {
+    let mut world = World::default();
+    let mut failures = Vec::new();
+    for example in examples(&mut world) {
+        for wo in views() {
+            let bsdf = bsdf_at(&world, example.material, UPRIGHT, wo);
+            let mean = furnace(20_000, 3, |rng| {
+                draw(&bsdf, wo, Importance, rng)
+                    .map(|s| s.weight.rgb().into_iter().fold(0.0, f32::max).into())
+            });
+            if !mean.is_at_most(1.0 + 1e-3, 4.0) {
+                failures.push(format!("{} from {wo:?}: {mean:?}", example.label));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// f(wo, wi) for radiance is f(wi, wo) for importance [Veach 1997, section 3.7.5].
+#[test]
+fn light_may_walk_either_way() {
+    let mut world = World::default();
+    for example in examples(&mut world).into_iter().filter(|example| example.is_reciprocal) {
+        let value = |wo: Vector3, wi: Vector3, mode| {
+            bsdf_at(&world, example.material, UPRIGHT, wo).eval_cos(wo, wi, mode).rgb()[0] / wi.z.abs()
+        };
+        // The pair is ordered by height, so that both calls ask for the same walk.
+        let walk = |a: Vector3, b: Vector3| {
+            if a.z > b.z { value(a, b, Radiance) } else { value(a, b, Importance) }
+        };
+        let worst = worst_asymmetry(20_000, 4, 0.1, walk).expect("twenty thousand pairs");
+        assert!(worst.relative < 5e-3, "{}: {worst:?}", example.label);
+    }
+}
+
+#[test]
+fn grazing_views_are_finite() {
+    let mut world = World::default();
+    let mut rng = Pcg32::new(5);
+    for example in examples(&mut world) {
+        for z in [0.0_f32, 1e-7, 1e-4, -1e-7, -1e-3] {
+            let wo = Vector3::new((1.0 - z * z).sqrt(), 0.0, z);
+            let bsdf = bsdf_at(&world, example.material, UPRIGHT, wo);
+            for _ in 0..200 {
+                let wi = warp::square_to_uniform_sphere(rng.point2());
+                for (wo, wi) in [(wo, wi), (wi, wo), (wo, wo), (wo, -wo)] {
+                    let (value, pdf) = (bsdf.eval_cos(wo, wi, Radiance), bsdf.pdf_omega(wo, wi));
+                    assert!(
+                        value.is_finite() && pdf.is_finite() && pdf >= 0.0,
+                        "{}: {wo:?} {wi:?}",
+                        example.label
+                    );
+                }
+                if let Some(s) = draw(&bsdf, wo, Radiance, &mut rng) {
+                    assert!(s.weight.is_finite() && s.pdf_omega > 0.0, "{}: {s:?}", example.label);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_frame_does_not_matter() {
+    let mut world = World::default();
+    let tilted = Frame::from_normal_and_tangent(Vector3::new(0.3, -0.8, 0.4).normalized(), Vector3::X);
+    let mut rng = Pcg32::new(6);
+    for example in examples(&mut world) {
+        for _ in 0..200 {
+            let (wo, wi) =
+                (warp::square_to_uniform_sphere(rng.point2()), warp::square_to_uniform_sphere(rng.point2()));
+            let upright = bsdf_at(&world, example.material, UPRIGHT, wo).eval_cos(wo, wi, Radiance);
+            let (wo, wi) = (tilted.to_world(wo), tilted.to_world(wi));
+            let turned = bsdf_at(&world, example.material, tilted, wo).eval_cos(wo, wi, Radiance);
+            let error = (upright - turned).map(f32::abs).max_element();
+            assert!(
+                error <= 1e-2 * upright.max_element() + 1e-4,
+                "{}: {upright:?} {turned:?}",
+                example.label
+            );
+        }
+    }
+}
