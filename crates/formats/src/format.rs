@@ -42,7 +42,7 @@ pub struct Context<'a> {
 }
 
 /// All formats.
-pub const FORMATS: &[Format] = &[crate::mitsuba::FORMAT];
+pub const FORMATS: &[Format] = &[crate::mitsuba::FORMAT, crate::object::PLY, crate::object::OBJ];
 
 /// All suffixes, for messages.
 pub fn known_suffixes() -> Vec<String> {

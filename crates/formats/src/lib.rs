@@ -19,6 +19,7 @@ pub mod file;
 mod format;
 pub mod mesh;
 mod mitsuba;
+mod object;
 
 use std::path::Path;
 

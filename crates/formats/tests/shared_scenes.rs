@@ -1,5 +1,7 @@
 //! Scenes that other renderers publish. They are not part of this project: where they are missing, the tests say so and pass.
 
+#![expect(clippy::print_stdout, reason = "a test that is skipped says so")]
+
 use std::path::{Path, PathBuf};
 
 use aureole_desc::{Report, SceneDesc, Sources, Value};

@@ -153,9 +153,9 @@ impl Stream<'_> {
     fn vectors<const N: usize>(&mut self, count: usize, double: bool) -> Result<Vec<[f32; N]>, MeshError> {
         let width = if double { 8 } else { 4 };
         let bytes = self.bytes(count.saturating_mul(N * width))?;
-        let number = |bytes: &[u8]| match bytes {
-            &[a, b, c, d] => f32::from_le_bytes([a, b, c, d]),
-            &[a, b, c, d, e, f, g, h] => f64::from_le_bytes([a, b, c, d, e, f, g, h]) as f32,
+        let number = |bytes: &[u8]| match *bytes {
+            [a, b, c, d] => f32::from_le_bytes([a, b, c, d]),
+            [a, b, c, d, e, f, g, h] => f64::from_le_bytes([a, b, c, d, e, f, g, h]) as f32,
             _ => 0.0,
         };
         let vector = |bytes: &[u8]| std::array::from_fn(|i| number(&bytes[i * width..][..width]));

@@ -13,7 +13,7 @@ const FILTERS: &[(&str, &str)] = &[
     ("tent", "tent"),
     ("gaussian", "gaussian"),
     ("mitchell", "mitchell"),
-    ("catmullrom", "catmull_rom"),
+    ("catmullrom", "mitchell"),
     ("lanczos", "lanczos"),
 ];
 
@@ -73,7 +73,12 @@ fn filter(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<NodeId, SceneE
     let tree = t.tree;
     let mut scope = Scope::new(tree, tree.get(id))?;
     let kind = t.kind(&scope, Family::Filter, FILTERS)?;
-    match kind {
+    match scope.object.plugin.as_str() {
+        // A member of the family of Mitchell and Netravali.
+        "catmullrom" => {
+            scope.out.push("b", Value::Float(0.0), scope.span());
+            scope.out.push("c", Value::Float(0.5), scope.span());
+        }
         // Mitsuba cuts the Gaussian off at four standard deviations.
         "gaussian" => {
             if let Some(std_dev) = scope.float("stddev")? {

@@ -21,7 +21,6 @@ const KINDS: &[(&str, &str)] = &[
     ("moment", ""),
     ("aov", ""),
     ("stokes", ""),
-    ("ao", "ao"),
 ];
 
 /// Quantities of `aov` that Aureole has a view of.
@@ -44,12 +43,10 @@ pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), S
         return wrapper(t, scope);
     }
     match plugin {
-        "volpath" | "volpathmis" | "prbvolpath" => {
-            if tree.has(Tag::Medium) {
-                let message =
-                    format!("participating media are not rendered yet: `{plugin}` is rendered as `path`");
-                t.context.report.warn(message, scope.span());
-            }
+        "volpath" | "volpathmis" | "prbvolpath" if tree.has(Tag::Medium) => {
+            let message =
+                format!("participating media are not rendered yet: `{plugin}` is rendered as `path`");
+            t.context.report.warn(message, scope.span());
         }
         "ptracer" | "prb" | "prb_basic" | "prb_projective" => {
             t.context.report.warn(format!("`{plugin}` is rendered as `path`"), scope.span());

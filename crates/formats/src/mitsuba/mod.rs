@@ -43,12 +43,11 @@ pub(crate) const FORMAT: Format = Format {
 fn read(input: Input<'_>, context: &mut Context<'_>) -> Result<SceneDesc, SceneError> {
     let before = context.report.errors.len();
     let parsed = xml::parse(input.path, input.text, context)?;
-    let scene = if context.report.errors.len() > before {
+    if context.report.errors.len() > before {
         Err(context.report.errors.remove(before))
     } else {
         translate::translate(&parsed, context)
-    };
-    scene
+    }
 }
 
 #[cfg(test)]

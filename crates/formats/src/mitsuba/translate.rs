@@ -35,7 +35,7 @@ pub(super) fn translate(parsed: &Parsed, context: &mut Context<'_>) -> Result<Sc
 enum State {
     New,
     Open,
-    Done(Value),
+    Done(Box<Value>),
 }
 
 /// What a mesh depends on: file, index in the file, whether v is flipped, whether normals are dropped.
@@ -82,7 +82,7 @@ impl<'a> Translator<'a, '_, '_> {
         let tree = self.tree;
         let object = tree.get(id);
         match &self.state[id.index()] {
-            State::Done(value) => return Ok(value.clone()),
+            State::Done(value) => return Ok(Value::clone(value)),
             State::Open => {
                 let name = object.id.as_deref().unwrap_or(&object.plugin);
                 return Err(SceneError::invalid(format!("`{name}` contains itself"), object.span));
@@ -110,7 +110,7 @@ impl<'a> Translator<'a, '_, '_> {
         });
         self.depth -= 1;
         let value = value.inspect_err(|_| self.state[id.index()] = State::New)?;
-        self.state[id.index()] = State::Done(value.clone());
+        self.state[id.index()] = State::Done(Box::new(value.clone()));
         Ok(value)
     }
 
