@@ -5,13 +5,16 @@
 //! | `texture` | texture | | height |
 //! | `scale` | float | 1 | factor on the height |
 //! | `bsdf` | bsdf | | the material |
+//! | `flip_invalid_normals` | bool | true | mirror a bent normal that the viewer could only see from behind |
+//! | `soften_terminator` | bool | true | fade light towards the true surface's horizon |
 //!
 //! References: [Blinn 1978] "Simulation of Wrinkled Surfaces".
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::{Frame, Id};
+use aureole_math::Id;
 
-use super::{Bsdf, Material, MaterialContext, MaterialOps, nested_material};
+use super::bend::{BEND_PARAMS, Bend};
+use super::{Bsdf, MaterialContext, MaterialOps};
 use crate::{Element, Resolver, Texture, float_texture};
 
 /// A bumpy material.
@@ -19,21 +22,26 @@ use crate::{Element, Resolver, Texture, float_texture};
 pub struct Bump {
     height: Id<Texture>,
     scale: f32,
-    material: Id<Material>,
+    bend: Bend,
 }
 
 impl Element for Bump {
     const SUMMARY: &'static str = "Bends the shading normal as if a texture raised the surface.";
-    const PARAMS: &'static [ParamDoc] = &[
-        ParamDoc { name: "texture", ty: "texture", default: "0", doc: "height" },
-        ParamDoc { name: "scale", ty: "float", default: "1", doc: "factor on the height" },
-        ParamDoc { name: "bsdf", ty: "bsdf", default: "", doc: "the material" },
-    ];
+    const PARAMS: &'static [ParamDoc] = &{
+        let [a, b, c] = BEND_PARAMS;
+        [
+            ParamDoc { name: "texture", ty: "texture", default: "0", doc: "height" },
+            ParamDoc { name: "scale", ty: "float", default: "1", doc: "factor on the height" },
+            a,
+            b,
+            c,
+        ]
+    };
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
         let height = float_texture(params, resolver, "texture", 0.0)?;
         let scale = params.float("scale", 1.0)?;
-        Ok(Self { height, scale, material: nested_material(params, resolver, "bsdf", "bump")? })
+        Ok(Self { height, scale, bend: Bend::from_params(params, resolver, "bump")? })
     }
 }
 
@@ -45,9 +53,6 @@ impl MaterialOps for Bump {
         let du = at.dp_du + n * (slope.x - n.dot(at.dp_du));
         let dv = at.dp_dv + n * (slope.y - n.dot(at.dp_dv));
         let bent = du.cross(dv).try_normalized().map_or(n, |bent| bent.face_forward(at.ng));
-        let first = out.len();
-        let frame = Frame::from_normal_and_tangent(bent, at.dp_du);
-        MaterialContext { frame, ..*at }.nested(self.material, weight, out);
-        out.rebase(first, n);
+        self.bend.evaluate(bent, at, weight, out);
     }
 }

@@ -3,6 +3,7 @@
 //! A *material* is a recipe: it names textures and other materials. At a hit it evaluates to a [`Bsdf`], a plain value
 //! on the stack made of a few weighted [`Lobe`]s, which know no textures.
 
+mod bend;
 mod blend;
 mod bump;
 mod conductor;

@@ -17,6 +17,8 @@ struct Placed {
     frame: Frame,
     /// The shading normal before bump or normal mapping: both normals must agree about sides, or light would leak.
     base_normal: Vector3,
+    /// Squared roughness of the facets that a bent normal stands for; zero where nothing is softened.
+    bump_alpha2: f32,
 }
 
 /// The scattering at a point of a surface, in world space. The weights of its lobes sum to at most one.
@@ -52,9 +54,26 @@ impl Placed {
     #[inline]
     fn eval_cos(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> Spectrum {
         match self.local(wo, wi) {
-            Some([wo, wi]) => self.lobe.eval(wo, wi, mode) * (wi.z.abs() * self.weight),
+            Some([wo, local_wi]) => {
+                self.lobe.eval(wo, local_wi, mode) * (local_wi.z.abs() * self.weight * self.shadowing(wi))
+            }
             None => Spectrum::ZERO,
         }
+    }
+
+    /// How much of the light from `wi` reaches a surface whose normal is bent: it fades towards the horizon of the true
+    /// surface, where a bent normal alone would cut it off.
+    ///
+    /// # References
+    /// [Conty Estevez, Lecocq and Stein 2019] "A Microfacet-Based Shadowing Function to Solve the Bump Terminator
+    /// Problem", Ray Tracing Gems.
+    #[inline]
+    fn shadowing(&self, wi: Vector3) -> f32 {
+        if self.bump_alpha2 == 0.0 {
+            return 1.0;
+        }
+        let cos2 = wi.dot(self.base_normal).powi(2).max(1e-12);
+        2.0 / (1.0 + (1.0 + self.bump_alpha2 * (1.0 - cos2) / cos2).sqrt())
     }
 
     #[inline]
@@ -74,15 +93,20 @@ impl Bsdf {
     #[inline]
     pub fn push(&mut self, lobe: impl Into<Lobe>, weight: f32, frame: Frame, base_normal: Vector3) {
         if weight > 0.0 && !self.lobes.is_full() {
-            self.lobes.push(Placed { lobe: lobe.into(), weight, frame, base_normal });
+            self.lobes.push(Placed { lobe: lobe.into(), weight, frame, base_normal, bump_alpha2: 0.0 });
         }
     }
 
-    /// Lets the sides of all lobes from the `first` on be judged by the normal before it was bent.
-    pub(super) fn rebase(&mut self, first: usize, normal: Vector3) {
+    /// Lets the sides of all lobes from the `first` on be judged by the normal before it was bent, and their terminator
+    /// be softened where that is wanted.
+    pub(super) fn rebase(&mut self, first: usize, normal: Vector3, soften: bool) {
         for placed in &mut self.lobes[first..] {
             // A two-sided material below may have turned its frame round; the base normal turns with it.
             placed.base_normal = normal.face_forward(placed.frame.n);
+            if soften {
+                let cos2 = normal.dot(placed.frame.n).powi(2).max(1e-12);
+                placed.bump_alpha2 = (0.125 * (1.0 - cos2) / cos2).clamp(0.0, 1.0);
+            }
         }
     }
 
@@ -131,7 +155,10 @@ impl Bsdf {
         }
         let probability = chosen.weight / total;
         let (value_cos, pdf_omega) = if drawn.flags.delta || self.lobes.len() == 1 {
-            (drawn.value * (drawn.wi.z.abs() * chosen.weight), drawn.pdf_omega * probability)
+            (
+                drawn.value * (drawn.wi.z.abs() * chosen.weight * chosen.shadowing(wi)),
+                drawn.pdf_omega * probability,
+            )
         } else {
             (self.eval_cos(wo, wi, mode), self.pdf_omega(wo, wi))
         };

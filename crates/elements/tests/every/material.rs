@@ -56,6 +56,8 @@ fn examples(world: &mut World) -> Vec<Example> {
     let lacquer = world.add(bsdf, "rough_plastic", [("distribution", word("ggx")), ("alpha", Float(0.25))]);
     let slope =
         world.add(Family::Texture, "bilerp", [("v01", rgb(0.0, 0.0, 0.0)), ("v10", rgb(0.4, 0.4, 0.4))]);
+    let picture = world.add(Family::Texture, "bitmap", [("filename", Value::Path("bumps.exr".into()))]);
+    let etched = frosted(world, "ggx", 0.3, 1.5, 1.0);
     let bent = world.add(Family::Texture, "constant", [("value", rgb(0.65, 0.4, 0.9))]);
 
     let list = [
@@ -94,8 +96,14 @@ fn examples(world: &mut World) -> Vec<Example> {
             world.add(bsdf, "blend", [("weight", Float(0.6)), ("a", lacquer), ("b", glass)])
         }),
         ("null", true, world.add(bsdf, "null", [])),
-        ("bump", false, { world.add(bsdf, "bump", [("texture", slope), ("bsdf", diffuse)]) }),
-        ("normal map", false, world.add(bsdf, "normal_map", [("texture", bent), ("bsdf", ggx)])),
+        ("bump", false, world.add(bsdf, "bump", [("texture", slope), ("bsdf", diffuse.clone())])),
+        ("bump from a picture", false, {
+            world.add(bsdf, "bump", [("texture", picture), ("scale", Float(0.8)), ("bsdf", diffuse)])
+        }),
+        ("normal map", false, world.add(bsdf, "normal_map", [("texture", bent.clone()), ("bsdf", ggx)])),
+        ("frosted under a normal map", false, {
+            world.add(bsdf, "normal_map", [("texture", bent), ("bsdf", etched)])
+        }),
     ];
     let example = |(label, is_reciprocal, node): (_, _, Value)| Example {
         label,
@@ -262,6 +270,51 @@ fn grazing_views_are_finite() {
                     assert!(s.weight.is_finite() && s.pdf_omega > 0.0, "{}: {s:?}", example.label);
                 }
             }
+        }
+    }
+}
+
+/// Values times cosine (red) of Mitsuba 3.9 (`scalar_rgb`) for four pairs of directions: reflection, nearly grazing
+/// reflection, and transmission from below and from above.
+#[test]
+fn values_are_those_of_mitsuba() {
+    let expected = [
+        ("diffuse", [0.15793, 0.16476, 0.0, 0.0]),
+        ("ggx conductor", [0.59692, 0.39792, 0.0, 0.0]),
+        ("anisotropic beckmann conductor", [1.1647, 0.26009, 0.0, 0.0]),
+        ("ggx dielectric", [0.030592, 0.045976, 2.077, 0.59485]),
+        ("beckmann dielectric", [0.03289, 0.0047745, 0.27626, 2.05e-05]),
+        ("air bubble", [0.42956, 0.41627, 0.064128, 0.84962]),
+        ("plastic", [0.13699, 0.087944, 0.0, 0.0]),
+        ("nonlinear plastic", [0.15394, 0.098822, 0.0, 0.0]),
+        ("rough plastic", [0.10504, 0.099856, 0.0, 0.0]),
+        ("two-sided plastic", [0.13699, 0.087944, 0.0, 0.0]),
+        ("two-faced", [0.59692, 0.39792, 0.0, 0.0]),
+        ("mask", [0.23877, 0.15917, 0.0, 0.0]),
+        ("blend", [0.45997, 0.19336, 0.0, 0.0]),
+        ("blend with glass", [0.042016, 0.039943, 0.0, 0.0]),
+        ("normal map", [0.064176, 0.081464, 0.0, 0.0]),
+        ("frosted under a normal map", [0.0032889, 0.0094125, 1.1246, 0.31621]),
+        ("bump from a picture", [0.20211, 0.18998, 0.0, 0.0]),
+    ];
+    let pairs = [
+        [Vector3::new(0.3, -0.5, 0.8), Vector3::new(-0.2, 0.6, 0.5)],
+        [Vector3::new(0.9, 0.2, 0.15), Vector3::new(-0.7, 0.1, 0.6)],
+        [Vector3::new(-0.4, 0.3, -0.7), Vector3::new(0.5, -0.2, 0.4)],
+        [Vector3::new(0.5, 0.1, 0.6), Vector3::new(-0.6, -0.3, -0.9)],
+    ]
+    .map(|pair| pair.map(Vector3::normalized));
+    let mut world = World::default();
+    let examples = examples(&mut world);
+    for (label, values) in expected {
+        let example = examples.iter().find(|example| example.label == label).expect(label);
+        for ([wo, wi], value) in pairs.into_iter().zip(values) {
+            let bsdf = bsdf_at(&world, example.material, UPRIGHT, wo);
+            let found = bsdf.eval_cos(wo, wi, Radiance).rgb()[0];
+            assert!(
+                (found - value).abs() <= 0.01 * value,
+                "{label}: {found}, not {value}, for {wo:?} {wi:?}"
+            );
         }
     }
 }

@@ -66,6 +66,7 @@ pub(super) fn translate<'a>(
             t.put_required(&mut scope, "b", Tag::Bsdf)?;
         }
         "bumpmap" | "normalmap" => {
+            scope.rename("use_shadowing_function", "soften_terminator");
             t.put_required(&mut scope, "texture", Tag::Texture)?;
             t.put_required(&mut scope, "bsdf", Tag::Bsdf)?;
         }

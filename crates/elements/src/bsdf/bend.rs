@@ -1,0 +1,60 @@
+//! What `bump` and `normal_map` share: a material below a bent shading normal.
+
+use aureole_desc::{ParamDoc, Params, SceneError};
+use aureole_math::{Frame, Id, Vector3};
+
+use super::{Bsdf, Material, MaterialContext, nested_material};
+use crate::Resolver;
+
+/// Documentation of the parameters of materials that bend normals.
+pub(super) const BEND_PARAMS: [ParamDoc; 3] = [
+    ParamDoc { name: "bsdf", ty: "bsdf", default: "", doc: "the material" },
+    ParamDoc {
+        name: "flip_invalid_normals",
+        ty: "bool",
+        default: "true",
+        doc: "mirror a bent normal that the viewer could only see from behind",
+    },
+    ParamDoc {
+        name: "soften_terminator",
+        ty: "bool",
+        default: "true",
+        doc: "fade light towards the true surface's horizon",
+    },
+];
+
+/// A material below a bent normal.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bend {
+    material: Id<Material>,
+    flip_invalid_normals: bool,
+    soften_terminator: bool,
+}
+
+impl Bend {
+    /// Reads the shared parameters.
+    pub(super) fn from_params(
+        params: &mut Params,
+        resolver: &mut dyn Resolver,
+        element: &str,
+    ) -> Result<Self, SceneError> {
+        Ok(Self {
+            material: nested_material(params, resolver, "bsdf", element)?,
+            flip_invalid_normals: params.bool("flip_invalid_normals", true)?,
+            soften_terminator: params.bool("soften_terminator", true)?,
+        })
+    }
+
+    /// Evaluates the material as if the shading normal were `bent`.
+    pub(super) fn evaluate(&self, bent: Vector3, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
+        let n = at.frame.n;
+        let is_invalid = at.wo.dot(bent) * at.wo.dot(n) <= 0.0;
+        // Mirrored about the normal: the slope is kept, and turned towards the viewer.
+        let bent =
+            if is_invalid && self.flip_invalid_normals { n * (2.0 * n.dot(bent)) - bent } else { bent };
+        let first = out.len();
+        let frame = Frame::from_normal_and_tangent(bent, at.dp_du);
+        MaterialContext { frame, ..*at }.nested(self.material, weight, out);
+        out.rebase(first, n, self.soften_terminator);
+    }
+}
