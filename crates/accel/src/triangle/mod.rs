@@ -5,7 +5,7 @@
 
 pub(crate) mod simd;
 
-use aureole_math::Ray;
+use aureole_math::{Ray, gamma};
 
 use crate::Hit;
 
@@ -128,10 +128,28 @@ pub(crate) fn intersect(block: &Block, ray: &ShearedRay, t_max: f32, mut found: 
         }
         let inv = 1.0 / det;
         let t = (u * z[0][i] + v * z[1][i] + w * z[2][i]) * inv;
-        if t > ray.t_min && t <= t_max {
+        if t > ray.t_min
+            && t <= t_max
+            && t > error_bound([u, v, w], [0, 1, 2].map(|k| [x[k][i], y[k][i], z[k][i]]), inv)
+        {
             found(BlockHit { lane: i, t, u: v * inv, v: w * inv });
         }
     }
+}
+
+/// How large the ray parameter of a point on the triangle's plane may come out by rounding alone: a ray that starts on
+/// the triangle must not hit it again.
+///
+/// # References
+/// [PBRT4] section 6.8.7, for sheared vertices and edge functions.
+#[inline]
+fn error_bound(edges: [f32; 3], vertices: [[f32; 3]; 3], inv_det: f32) -> f32 {
+    let largest = |values: [f32; 3]| values[0].abs().max(values[1].abs()).max(values[2].abs());
+    let [x, y, z] = [0, 1, 2].map(|axis| largest(vertices.map(|v| v[axis])));
+    let (dz, dx, dy) = (gamma(3) * z, gamma(5) * (x + z), gamma(5) * (y + z));
+    let de = 2.0 * (gamma(2) * x * y + dy * x + dx * y);
+    let e = largest(edges);
+    3.0 * (gamma(3) * e * z + de * z + dz * e) * inv_det.abs()
 }
 
 impl Block {

@@ -5,6 +5,7 @@
 //! | `color0` | texture | 0.4 | where both coordinates' halves agree |
 //! | `color1` | texture | 0.2 | elsewhere |
 //! | `to_uv` | transform | identity | applied to the surface's uv; one unit holds two squares |
+//! | `swap_numbers` | bool | false | where a number is wanted, exchange the two: Mitsuba's checkerboards do |
 
 use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Arena, Id, Vector2};
@@ -18,14 +19,22 @@ use crate::{Element, Resolver, spectrum_texture};
 pub struct Checkerboard {
     colors: [Id<Texture>; 2],
     uv: UvMap,
+    swap_numbers: bool,
 }
 
 impl Checkerboard {
+    /// Which of the two is at a point.
     #[inline]
-    fn pick(&self, at: &TextureContext<'_>) -> Id<Texture> {
+    fn pick(&self, at: &TextureContext<'_>) -> usize {
         let p = self.uv.apply(at.uv);
         let half = |x: f32| x - x.floor() > 0.5;
-        self.colors[usize::from(half(p.x) != half(p.y))]
+        usize::from(half(p.x) != half(p.y))
+    }
+
+    /// The texture that gives the number at a point.
+    #[inline]
+    fn number(&self, at: &TextureContext<'_>) -> Id<Texture> {
+        self.colors[self.pick(at) ^ usize::from(self.swap_numbers)]
     }
 }
 
@@ -40,6 +49,12 @@ impl Element for Checkerboard {
         },
         ParamDoc { name: "color1", ty: "texture", default: "0.2", doc: "elsewhere" },
         ParamDoc { name: "to_uv", ty: "transform", default: "identity", doc: "applied to the surface's uv" },
+        ParamDoc {
+            name: "swap_numbers",
+            ty: "bool",
+            default: "false",
+            doc: "exchange the two where a number is wanted",
+        },
     ];
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -49,6 +64,7 @@ impl Element for Checkerboard {
                 spectrum_texture(params, resolver, "color1", 0.2, SpectrumRole::Albedo)?,
             ],
             uv: UvMap::new(&params.transform("to_uv")?),
+            swap_numbers: params.bool("swap_numbers", false)?,
         })
     }
 }
@@ -56,15 +72,15 @@ impl Element for Checkerboard {
 impl TextureOps for Checkerboard {
     #[inline]
     fn eval(&self, at: &TextureContext<'_>) -> Spectrum {
-        at.spectrum(self.pick(at))
+        at.spectrum(self.colors[self.pick(at)])
     }
 
     fn eval_float(&self, at: &TextureContext<'_>) -> f32 {
-        at.float(self.pick(at))
+        at.float(self.number(at))
     }
 
     fn gradient(&self, at: &TextureContext<'_>) -> Vector2 {
-        at.gradient(self.pick(at))
+        at.gradient(self.number(at))
     }
 
     fn mean(&self, textures: &Arena<Texture>) -> Spectrum {

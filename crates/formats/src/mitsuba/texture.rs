@@ -47,7 +47,11 @@ pub(super) fn translate<'a>(
             place(&mut scope)?;
             flip_v(&mut scope)?;
         }
-        "checkerboard" => place(&mut scope)?,
+        "checkerboard" => {
+            place(&mut scope)?;
+            // Mitsuba's `eval_1` takes the other colour than its `eval`; its images depend on it.
+            scope.out.push("swap_numbers", Value::Bool(true), scope.span());
+        }
         _ => {}
     }
     t.finish(scope, Family::Texture, kind).map(Value::Node)
