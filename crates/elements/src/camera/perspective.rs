@@ -4,7 +4,7 @@
 //! |---|---|---|---|
 //! | `fov` | float | 45 | angle of view along `fov_axis`, degrees |
 //! | `fov_axis` | string | x | `x`, `y`, `diagonal`, `smaller`, `larger` |
-//! | `principal_point_x`, `_y` | float | 0 | shift of the image's centre, as fractions of its size |
+//! | `principal_point_x`, `_y` | float | 0 | how far right and down on the film each pixel looks from, in fractions of its size |
 //! | `aperture_radius` | float | 0 | of the lens |
 //! | `focus_distance` | float | 1 | to the plane in focus |
 //!
@@ -44,13 +44,13 @@ impl Element for Perspective {
                 name: "principal_point_x",
                 ty: "float",
                 default: "0",
-                doc: "shift as a fraction of the width",
+                doc: "how far right on the film each pixel looks from, as a fraction of the width",
             },
             ParamDoc {
                 name: "principal_point_y",
                 ty: "float",
                 default: "0",
-                doc: "shift as a fraction of the height",
+                doc: "how far down on the film each pixel looks from, as a fraction of the height",
             },
             a,
             b,
@@ -72,7 +72,7 @@ impl Element for Perspective {
             [params.float("principal_point_x", 0.0)?, params.float("principal_point_y", 0.0)?];
         let [x0, x1, y0, y1] = projective.window;
         let (dx, dy) = (shift_x * (x1 - x0), shift_y * (y1 - y0));
-        projective.window = [x0 - dx, x1 - dx, y0 + dy, y1 + dy];
+        projective.window = [x0 + dx, x1 + dx, y0 - dy, y1 - dy];
         Ok(Self { projective })
     }
 }

@@ -6,6 +6,7 @@
 //! | `scale` | float | 1 | factor |
 //! | `fov` | float | 45 | angle of view along `fov_axis`, degrees |
 //! | `fov_axis` | string | x | `x`, `y`, `diagonal`, `smaller` or `larger` side of the slide |
+//! | `flip_v` | bool | false | hang the slide upside down |
 //! | `world_from_light` | transform | identity | |
 
 use aureole_desc::{ParamDoc, Params, SceneError};
@@ -26,6 +27,7 @@ pub struct Projector {
     scale: f32,
     fov: f32,
     fov_axis: FovAxis,
+    flip_v: bool,
 }
 
 impl Element for Projector {
@@ -40,6 +42,7 @@ impl Element for Projector {
             default: "x",
             doc: "`x`, `y`, `diagonal`, `smaller` or `larger`",
         },
+        ParamDoc { name: "flip_v", ty: "bool", default: "false", doc: "hang the slide upside down" },
         ParamDoc {
             name: "world_from_light",
             ty: "transform",
@@ -58,6 +61,7 @@ impl Element for Projector {
             scale: params.float("scale", 1.0)?,
             fov: params.float_in("fov", 45.0, 1e-3, 179.9)?.to_radians(),
             fov_axis: FovAxis::from_params(params)?,
+            flip_v: params.bool("flip_v", false)?,
         })
     }
 }
@@ -85,6 +89,7 @@ impl LightOps for Projector {
         if !(0.0..=1.0).contains(&u) || !(0.0..=1.0).contains(&v) {
             return None;
         }
+        let v = if self.flip_v { 1.0 - v } else { v };
         let slide =
             TextureContext::at_uv(at.textures, at.wavelengths, Point2::new(u, v)).spectrum(self.slide);
         let radiance = slide * (self.scale / (local.z * local.z * -self.axis.dot(wi)));

@@ -51,7 +51,13 @@ pub(super) fn translate<'a>(
             t.put_path(&mut scope)?;
             scope.out.push("mapping", Value::String("latlong".to_owned()), scope.span());
         }
-        "projector" => sensor::field_of_view(&mut scope)?,
+        "projector" => {
+            sensor::field_of_view(&mut scope)?;
+            // Mitsuba's slide hangs with v = 0 at the top, and its irradiance is short of a factor π.
+            scope.out.push("flip_v", Value::Bool(true), scope.span());
+            let scale = scope.float("scale")?.unwrap_or(1.0);
+            scope.out.push("scale", Value::Float(scale * std::f64::consts::PI), scope.span());
+        }
         _ => {}
     }
     t.finish(scope, Family::Light, kind)

@@ -1,0 +1,125 @@
+//! Cameras: rays go where films and lenses say.
+
+use aureole_desc::{Family, Node, Params, Span, Value};
+use aureole_elements::Camera;
+use aureole_elements::camera::CameraSample;
+use aureole_math::{Pcg32, Point2, Point3, Ray, Transform, Vector3, warp};
+use aureole_testkit::{Chi2Config, chi2_sphere};
+
+use crate::world::{World, params, word};
+
+use Value::Float;
+
+/// The world's film is twice as wide as high.
+const FILM: [f32; 2] = [256.0, 128.0];
+
+fn camera(kind: &str, params: Params) -> Camera {
+    let node = Node::new(Family::Camera, kind, params, Span::NONE);
+    Camera::build(&node, &mut World::default()).unwrap_or_else(|error| panic!("{kind}: {error}"))
+}
+
+/// The ray through a place on the film, in fractions of its size from the top left.
+fn ray(camera: &Camera, x: f32, y: f32, lens: Point2) -> Ray {
+    camera.generate_ray(&CameraSample { film: Point2::new(x * FILM[0], y * FILM[1]), lens, time: 0.0 })
+}
+
+const CENTER: Point2 = Point2 { x: 0.5, y: 0.5 };
+
+fn place() -> (&'static str, Value) {
+    let from = Point3::new(0.5, 1.0, -2.0);
+    let view = Transform::look_at(from, Point3::new(0.1, 0.2, 0.3), Vector3::new(0.1, 1.0, 0.0));
+    ("world_from_camera", Value::Transform(view.expect("not along the up vector")))
+}
+
+#[test]
+fn every_kind_makes_unit_rays() {
+    let mut rng = Pcg32::new(1);
+    for kind in Camera::KINDS {
+        let camera = camera(kind, params([place()]));
+        for _ in 0..1000 {
+            let r = ray(&camera, rng.next_f32(), rng.next_f32(), rng.point2());
+            assert!((r.direction.length() - 1.0).abs() < 1e-5, "{kind}: {r:?}");
+            assert!(r.origin.is_finite() && r.t_min >= 0.0 && r.t_max > r.t_min, "{kind}: {r:?}");
+        }
+    }
+}
+
+#[test]
+fn opposite_borders_are_the_field_of_view_apart() {
+    let angle = |camera: &Camera, [a, b]: [[f32; 2]; 2]| {
+        let [a, b] = [a, b].map(|[x, y]| ray(camera, x, y, CENTER).direction);
+        a.dot(b).clamp(-1.0, 1.0).acos().to_degrees()
+    };
+    let horizontal = [[0.0, 0.5], [1.0, 0.5]];
+    let vertical = [[0.5, 0.0], [0.5, 1.0]];
+    let diagonal = [[0.0, 0.0], [1.0, 1.0]];
+    let cases = [
+        ("x", horizontal),
+        ("larger", horizontal),
+        ("y", vertical),
+        ("smaller", vertical),
+        ("diagonal", diagonal),
+    ];
+    for (axis, borders) in cases {
+        let camera = camera("perspective", params([place(), ("fov", Float(50.0)), ("fov_axis", word(axis))]));
+        assert!((angle(&camera, borders) - 50.0).abs() < 1e-2, "{axis}");
+    }
+}
+
+/// The image's right is −X of camera space, its top +Y.
+#[test]
+fn images_are_upright() {
+    for kind in ["perspective", "orthographic"] {
+        let camera = camera(kind, params([]));
+        let seen = |x, y| ray(&camera, x, y, CENTER).at(5.0);
+        assert!(seen(0.9, 0.5).x < -0.1 && seen(0.1, 0.5).x > 0.1, "{kind}");
+        assert!(seen(0.5, 0.1).y > 0.1 && seen(0.5, 0.9).y < -0.1, "{kind}");
+    }
+}
+
+#[test]
+fn a_lens_gathers_in_the_plane_of_focus() {
+    for kind in ["perspective", "orthographic"] {
+        let lens = [("aperture_radius", Float(0.2)), ("focus_distance", Float(3.0))];
+        let camera = camera(kind, params(lens));
+        let mut rng = Pcg32::new(2);
+        let at_focus = |r: Ray| r.origin + r.direction * ((3.0 - r.origin.z) / r.direction.z);
+        let expected = at_focus(ray(&camera, 0.3, 0.6, CENTER));
+        let mut widest = 0.0_f32;
+        for _ in 0..500 {
+            let r = ray(&camera, 0.3, 0.6, rng.point2());
+            assert!((at_focus(r) - expected).length() < 1e-4, "{kind}: {r:?}");
+            widest = widest.max((r.origin - ray(&camera, 0.3, 0.6, CENTER).origin).length());
+        }
+        assert!((0.19..0.2001).contains(&widest), "{kind}: {widest}");
+    }
+}
+
+/// Directions of Mitsuba 3.9 through the film at (0.02586013, 0.9354395), with its principal point moved by (0.1, -0.2).
+#[test]
+fn the_principal_point_moves_as_in_mitsuba() {
+    let shift = [("principal_point_x", Float(0.1)), ("principal_point_y", Float(-0.2))];
+    let [a, b] = shift;
+    let camera = camera("perspective", params([place(), ("fov", Float(50.0)), a, b]));
+    let expected = Vector3::new(0.165_874_9, -0.433_752_86, 0.885_631_9);
+    let found = ray(&camera, 0.025_860_13, 0.935_439_5, CENTER).direction;
+    assert!((found - expected).length() < 1e-4, "{found:?}");
+}
+
+/// A film drawn evenly by solid angle covers the sphere evenly. False alarm: one in a hundred seeds.
+#[test]
+fn spherical_cameras_see_everything() {
+    for (mapping, is_equal_area) in [("latlong", false), ("equal_area", true)] {
+        let camera = camera("spherical", params([place(), ("mapping", word(mapping))]));
+        let config = Chi2Config { test_count: 2, ..Chi2Config::default() };
+        let sample = |rng: &mut Pcg32| {
+            let u = rng.point2();
+            // Rows of a latitude picture are as long as the sine of their angle.
+            let y = if is_equal_area { u.y } else { (1.0 - 2.0 * u.y).acos() / std::f32::consts::PI };
+            Some(ray(&camera, u.x, y, CENTER).direction)
+        };
+        if let Err(error) = chi2_sphere(&config, sample, |_| warp::UNIFORM_SPHERE_PDF) {
+            panic!("{mapping}: {error}");
+        }
+    }
+}
