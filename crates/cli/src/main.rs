@@ -1,3 +1,39 @@
 //! The program `aureole`.
 
-fn main() {}
+#![forbid(unsafe_code)]
+
+mod args;
+mod command;
+mod diagnostics;
+mod exit;
+mod output;
+mod progress;
+mod session;
+mod signals;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::args::{Cli, Command};
+use crate::diagnostics::Painter;
+use crate::exit::Failure;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let painter = Painter::for_terminal();
+    let result = match &cli.command {
+        Command::Render(args) => command::render::run(args, &painter),
+        Command::Info(args) => command::info::run(args, &painter),
+        Command::List(args) => command::list::run(args),
+        Command::Diff(args) => command::diff::run(args),
+        Command::Gallery(args) => command::gallery::run(args, &painter),
+    };
+    let exit = result.unwrap_or_else(|failure| {
+        if let Failure::Plain { message, help, .. } = &failure {
+            painter.error(message, help.as_deref());
+        }
+        failure.exit()
+    });
+    exit.into()
+}
