@@ -36,7 +36,9 @@ pub use aureole_spectrum as spectrum;
 
 /// What nearly every program needs.
 pub mod prelude {
-    pub use aureole_desc::{Family, Node, NodeId, Params, Report, SceneDesc, SceneError, Sources, Span, Value};
+    pub use aureole_desc::{
+        Family, Node, NodeId, Params, Report, SceneDesc, SceneError, Sources, Span, Value,
+    };
     pub use aureole_formats::{LoadOptions, load, load_text};
     pub use aureole_image::{Image, ToneMapping, WriteOptions, write_image};
     pub use aureole_math::{Point3, Transform, Vector3};

@@ -5,8 +5,8 @@ use std::io::{IsTerminal, Write};
 
 use aureole::desc::{Report, SceneError, Sources, Span, Warning};
 use miette::{
-    Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, Severity,
-    SourceCode, SourceSpan, SpanContents,
+    Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents,
+    Severity, SourceCode, SourceSpan, SpanContents,
 };
 
 /// More messages than this of one kind are counted, not shown, unless everything is asked for.
@@ -159,9 +159,11 @@ impl Excerpt {
 
         // Marks end with their line, and have a visible length.
         let end = ceil_char(text, span.end as usize).min(line_end).max(start);
-        let from = if start - line_start > EXCERPT { floor_char(text, start - EXCERPT / 2) } else { line_start };
+        let from =
+            if start - line_start > EXCERPT { floor_char(text, start - EXCERPT / 2) } else { line_start };
         let to = ceil_char(text, end.min(start + EXCERPT) + EXCERPT / 2).min(line_end).max(start);
-        let (before, after) = (if from > line_start { "… " } else { "" }, if to < line_end { " …" } else { "" });
+        let (before, after) =
+            (if from > line_start { "… " } else { "" }, if to < line_end { " …" } else { "" });
         let shown = format!("{before}{}{after} ", &text[from..to]);
         let length = (end.min(to) - start).max(1);
         let mark = (before.len() + start - from, length).into();

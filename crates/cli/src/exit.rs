@@ -87,7 +87,8 @@ impl From<ImageError> for Failure {
     fn from(error: ImageError) -> Self {
         let exit = match &error {
             ImageError::Write { .. } => Exit::Io,
-            ImageError::UnknownFormat { .. } | ImageError::Mismatch(_) => Exit::Usage,
+            ImageError::UnknownFormat { .. } => Exit::Usage,
+            ImageError::Mismatch(_) => Exit::Failed,
             _ if error.is_limit() => Exit::Limit,
             _ => Exit::Scene,
         };

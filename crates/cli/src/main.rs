@@ -10,6 +10,7 @@ mod output;
 mod progress;
 mod session;
 mod signals;
+mod window;
 
 use std::process::ExitCode;
 

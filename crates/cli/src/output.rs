@@ -34,7 +34,9 @@ impl Output {
             return Ok(Self::Stdout(format.unwrap_or(Format::Png)));
         }
         match format {
-            Some(_) => Err(Failure::usage("`--format` is for `-o -`; a file's format follows from its suffix")),
+            Some(_) => {
+                Err(Failure::usage("`--format` is for `-o -`; a file's format follows from its suffix"))
+            }
             None => Ok(Self::File(path.to_owned())),
         }
     }
@@ -76,7 +78,8 @@ fn check_file(path: &Path) -> Result<(), Failure> {
         return Err(Failure::usage(format!("`{}` files can be read, not written", format.suffix()))
             .with_help(format!("formats that can be written: {}", known.join(", "))));
     }
-    let fault = |message: &str| Failure::new(Exit::Io, format!("cannot write `{}`: {message}", path.display()));
+    let fault =
+        |message: &str| Failure::new(Exit::Io, format!("cannot write `{}`: {message}", path.display()));
     match std::fs::metadata(path) {
         Ok(meta) if meta.is_dir() => return Err(fault("it is a folder")),
         Ok(meta) if meta.permissions().readonly() => return Err(fault("it is read-only")),

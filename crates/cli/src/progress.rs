@@ -87,7 +87,13 @@ pub(crate) fn quantity(x: f64) -> String {
 }
 
 fn three_digits(x: f64) -> String {
-    let decimals = if x >= 99.95 || x.fract() == 0.0 { 0 } else if x >= 9.995 { 1 } else { 2 };
+    let decimals = if x >= 99.95 || x.fract() == 0.0 {
+        0
+    } else if x >= 9.995 {
+        1
+    } else {
+        2
+    };
     format!("{x:.decimals$}")
 }
 

@@ -17,6 +17,7 @@
 
 pub mod file;
 mod format;
+mod gallery;
 pub mod mesh;
 mod mitsuba;
 mod object;
@@ -27,6 +28,7 @@ use aureole_desc::{Limits, Report, SceneDesc, SceneError, Sources};
 use aureole_spectrum::ColorMode;
 
 pub use format::{Context, FORMATS, Format, Input, known_suffixes};
+pub use gallery::{GALLERY, GalleryScene};
 
 /// What a reader may be told.
 #[derive(Clone, Debug, Default)]

@@ -19,6 +19,7 @@
 mod compile;
 mod film;
 mod lights;
+pub mod manual;
 mod resolve;
 mod scene;
 mod shapes;

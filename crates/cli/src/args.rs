@@ -1,0 +1,387 @@
+//! The command line.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::time::Duration;
+
+use aureole::image::{Format, ToneCurve};
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Renders scenes by following light.
+///
+/// Reads pbrt-v4 and Mitsuba 3 scenes, and PLY and OBJ meshes; writes EXR, PNG, JPEG, HDR, PFM and PPM.
+#[derive(Debug, Parser)]
+#[command(name = "aureole", version, propagate_version = true, max_term_width = 110)]
+#[command(after_help = "Exit codes: 0 done, 1 a comparison failed, 2 wrong usage, 3 wrong scene or asset, \
+    4 cannot write, 5 a limit was met, 130 and 143 interrupted after writing what there was.")]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene to an image
+    Render(RenderArgs),
+    /// Show what a scene consists of, and what of it is not understood
+    Info(InfoArgs),
+    /// List the elements that scenes are made of, with their parameters
+    List(ListArgs),
+    /// Measure how far an image is from a reference
+    Diff(DiffArgs),
+    /// List, show or render the scenes that come with the program
+    Gallery(GalleryArgs),
+}
+
+/// The scene and what is changed about it.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct SceneArgs {
+    /// The scene: .pbrt, .xml, .ply, .obj, or `gallery:NAME`
+    pub scene: Option<PathBuf>,
+    /// Give a value to a parameter of the scene file (`$name` in Mitsuba's format)
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = assignment, help_heading = "Scene")]
+    pub define: Vec<(String, String)>,
+    /// Change an element: `integrator.max_depth=3`, `sampler.kind=independent`, `camera.fov=30`, `NAME.param=value`
+    #[arg(long, value_name = "PATH=VALUE", value_parser = assignment, help_heading = "Scene")]
+    pub set: Vec<(String, String)>,
+    /// Use another of the scene's cameras, counted from 0
+    #[arg(short = 's', long, value_name = "N", default_value_t = 0, help_heading = "Scene")]
+    pub camera: usize,
+    /// Size of the whole image
+    #[arg(long, value_name = "WxH", help_heading = "Scene")]
+    pub resolution: Option<Size>,
+    /// Render a part: fractions of the image where all are within 0 to 1, else pixels
+    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, help_heading = "Scene")]
+    pub crop: Option<Corners>,
+    /// The same in pbrt's order, always as fractions
+    #[arg(long = "cropwindow", value_name = "X0,X1,Y0,Y1", conflicts_with = "crop", hide = true)]
+    pub crop_window: Option<Corners>,
+    /// Treat warnings as errors
+    #[arg(long, help_heading = "Scene")]
+    pub strict: bool,
+    #[command(flatten)]
+    pub limits: LimitArgs,
+}
+
+/// What a file may ask for.
+#[derive(Args, Clone, Copy, Debug, Default)]
+#[command(next_help_heading = "Limits")]
+pub(crate) struct LimitArgs {
+    /// Pixels of an image, rendered or read
+    #[arg(long, value_name = "N")]
+    pub max_pixels: Option<u64>,
+    /// Bytes of a file after unpacking
+    #[arg(long, value_name = "N")]
+    pub max_file_bytes: Option<u64>,
+    /// Vertices or triangles of a mesh
+    #[arg(long, value_name = "N")]
+    pub max_mesh_elements: Option<u64>,
+    /// Includes within includes
+    #[arg(long, value_name = "N")]
+    pub max_include_depth: Option<usize>,
+}
+
+/// How loud to be.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(crate) struct Loudness {
+    /// Say nothing but errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say more: all warnings, where the time goes
+    #[arg(short, long)]
+    pub verbose: bool,
+}
+
+/// `aureole render`
+#[derive(Args, Debug, Default)]
+#[command(after_help = "Examples:
+  aureole render                               the Cornell box, to cornell-box.png
+  aureole render scene.pbrt -o scene.exr --spp 256
+  aureole render scene.xml --time 60 -D angle=30 --set integrator.max_depth=5
+  aureole render bunny.ply --resolution 1280x720 --tone agx --exposure 1
+  aureole render scene.xml --crop 0.4,0.4,0.6,0.6 -o - > detail.png
+  aureole render gallery:glass --integrator whitted --stats json")]
+pub(crate) struct RenderArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// The image; `-` is standard output [default: the scene's own name for it, else SCENE.png here]
+    #[arg(short, long, value_name = "FILE", visible_alias = "outfile", help_heading = "Image")]
+    pub output: Option<PathBuf>,
+    /// Format of standard output: exr, png, jpg, hdr, pfm, ppm [default: png]
+    #[arg(long, value_name = "FORMAT", value_parser = image_format, help_heading = "Image")]
+    pub format: Option<Format>,
+    /// Make the image brighter (eight-bit formats): each stop doubles it
+    #[arg(
+        long,
+        value_name = "STOPS",
+        default_value_t = 0.0,
+        allow_hyphen_values = true,
+        help_heading = "Image"
+    )]
+    pub exposure: f32,
+    /// Curve from radiance to display (eight-bit formats)
+    #[arg(long, default_value = "srgb", help_heading = "Image")]
+    pub tone: Tone,
+    /// Samples a pixel [default: the scene's, or as many as fit into --time]
+    #[arg(long, value_name = "N", visible_alias = "samples", help_heading = "Sampling",
+        value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// Stop after this time
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = "Sampling")]
+    pub time: Option<Duration>,
+    /// Another seed draws other samples
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Sampling")]
+    pub seed: u64,
+    /// Threads; 0 is one for each processor
+    #[arg(
+        short,
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        visible_alias = "nthreads",
+        help_heading = "Sampling"
+    )]
+    pub threads: usize,
+    /// Algorithm, instead of the scene's
+    #[arg(long, value_name = "NAME", value_parser = integrators(), help_heading = "Sampling")]
+    pub integrator: Option<String>,
+    /// How colour travels
+    #[arg(long, default_value = "rgb", help_heading = "Sampling")]
+    pub color: Color,
+    /// Print figures on standard output when done, instead of a line on standard error
+    #[arg(long, value_name = "FORMAT")]
+    pub stats: Option<StatsFormat>,
+    #[command(flatten)]
+    pub loudness: Loudness,
+}
+
+/// `aureole info`
+#[derive(Args, Debug)]
+#[command(arg_required_else_help = true)]
+#[command(after_help = "Examples:
+  aureole info scene.pbrt
+  aureole info scene.xml --accel
+  aureole info gallery:cornell-box --json")]
+pub(crate) struct InfoArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Show figures about the acceleration structure
+    #[arg(long)]
+    pub accel: bool,
+    #[command(flatten)]
+    pub loudness: Loudness,
+}
+
+/// `aureole list`
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  aureole list                                 every element in a line
+  aureole list bsdf                            materials with all their parameters
+  aureole list rough_conductor                 one element
+  aureole list --json")]
+pub(crate) struct ListArgs {
+    /// A family (shape, bsdf, texture, light, camera, filter, sampler, integrator ...) or the name of an element
+    pub family: Option<String>,
+    /// Print a JSON array
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `aureole diff`
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  aureole diff reference.exr image.exr
+  aureole diff reference.exr image.exr --metric mse --fail-above 1e-3
+  aureole diff reference.png image.png -o flip.png
+  aureole diff mean.exr image.exr --ztest variance.exr --spp 64")]
+pub(crate) struct DiffArgs {
+    /// The reference
+    pub reference: PathBuf,
+    /// The image that is measured
+    pub image: PathBuf,
+    /// What `--fail-above` looks at and `--output` shows
+    #[arg(long, default_value = "flip")]
+    pub metric: Metric,
+    /// End with code 1 if the metric is above this
+    #[arg(long, value_name = "X")]
+    pub fail_above: Option<f64>,
+    /// Write a picture of the errors
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Test whether noise explains the differences; the file has the variance of one sample
+    #[arg(long, value_name = "VARIANCE", requires = "spp")]
+    pub ztest: Option<PathBuf>,
+    /// Samples a pixel of the image, for the test
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub spp: Option<u64>,
+    /// Make both brighter before they are seen (PSNR, FLIP): each stop doubles them
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub exposure: f32,
+    /// Curve by which both are seen (PSNR, FLIP)
+    #[arg(long, default_value = "srgb")]
+    pub tone: Tone,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `aureole gallery`
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  aureole gallery                              what there is
+  aureole gallery glass > glass.xml            a scene to start from
+  aureole gallery glass -o pictures            render one to pictures/glass.png
+  aureole gallery -o pictures --spp 16         render all")]
+pub(crate) struct GalleryArgs {
+    /// The scene to show, or to render
+    pub name: Option<String>,
+    /// Render into this folder
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+    /// Samples a pixel [default: each scene's]
+    #[arg(long, value_name = "N", requires = "output", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    #[command(flatten)]
+    pub loudness: Loudness,
+}
+
+/// Curves from radiance to display.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Tone {
+    /// sRGB's own; clips what is brighter than white
+    #[default]
+    Srgb,
+    /// Film-like shoulder and toe
+    Filmic,
+    /// AgX: bright colours fade to white
+    Agx,
+    /// None: clipped linear values
+    Linear,
+}
+
+impl From<Tone> for ToneCurve {
+    fn from(tone: Tone) -> Self {
+        match tone {
+            Tone::Srgb => Self::Srgb,
+            Tone::Filmic => Self::Filmic,
+            Tone::Agx => Self::Agx,
+            Tone::Linear => Self::Linear,
+        }
+    }
+}
+
+/// What radiance is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Color {
+    /// Red, green and blue
+    #[default]
+    Rgb,
+    /// Wavelengths (not yet)
+    Spectral,
+}
+
+/// How figures are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StatsFormat {
+    /// One JSON object in one line
+    Json,
+}
+
+/// Measures of difference for which more is worse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Metric {
+    /// Mean squared error
+    Mse,
+    /// Mean squared error relative to the reference
+    #[value(alias = "rel-mse")]
+    Relmse,
+    /// Mean absolute error
+    Mae,
+    /// Largest absolute error
+    Max,
+    /// What an eye notices when the pictures alternate
+    Flip,
+}
+
+/// Pixels across and down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Size {
+    pub width: u32,
+    pub height: u32,
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |text: &str| text.trim().parse().ok().filter(|n| (1..=1 << 20).contains(n));
+        let sides = text.split_once(['x', 'X', '×']).map(|(width, height)| (side(width), side(height)));
+        match sides {
+            Some((Some(width), Some(height))) => Ok(Self { width, height }),
+            _ => Err("it must look like 640x480".to_owned()),
+        }
+    }
+}
+
+/// Four numbers that bound a part of an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Corners(pub [f64; 4]);
+
+impl FromStr for Corners {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+        let numbers = numbers.ok().and_then(|list| <[f64; 4]>::try_from(list).ok());
+        let finite = numbers.filter(|list| list.iter().all(|x| x.is_finite() && *x >= 0.0));
+        finite.map(Self).ok_or_else(|| "it must be four numbers with commas between them".to_owned())
+    }
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.to_owned())),
+        _ => Err("it must look like name=value".to_owned()),
+    }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|&x: &f64| x > 0.0);
+    seconds
+        .and_then(|x| Duration::try_from_secs_f64(x).ok())
+        .ok_or_else(|| "it must be a positive number of seconds".to_owned())
+}
+
+fn image_format(text: &str) -> Result<Format, String> {
+    let format = Format::from_suffix(text.trim_start_matches('.')).map_err(|error| error.to_string())?;
+    format.writable().then_some(format).ok_or_else(|| format!("`{text}` files can be read, not written"))
+}
+
+fn integrators() -> PossibleValuesParser {
+    aureole::render::integrators().iter().map(|integrator| integrator.kind).collect::<Vec<_>>().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_definitions_are_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_and_corners_are_read() {
+        assert_eq!("640x480".parse(), Ok(Size { width: 640, height: 480 }));
+        assert!("640".parse::<Size>().is_err() && "0x4".parse::<Size>().is_err());
+        assert_eq!("0,0.25,1,0.75".parse(), Ok(Corners([0.0, 0.25, 1.0, 0.75])));
+        assert!("0,1,2".parse::<Corners>().is_err() && "-1,0,1,1".parse::<Corners>().is_err());
+    }
+}

@@ -1,0 +1,194 @@
+//! `aureole render`: from a scene file to an image.
+
+use std::path::PathBuf;
+
+use aureole::image::{ToneMapping, WriteOptions};
+use aureole::render::{RenderOptions, RenderStats, Rendered, render};
+use serde::Serialize;
+
+use crate::args::{Color, RenderArgs, StatsFormat};
+use crate::diagnostics::Painter;
+use crate::exit::{self, Exit, Failure};
+use crate::output::{Output, print};
+use crate::progress::{Watch, duration, quantity};
+use crate::session::{self, Session};
+use crate::signals::Signals;
+
+/// Figures of a render, as `--stats json` prints them.
+#[derive(Debug, Serialize)]
+struct Stats {
+    load_seconds: f64,
+    build_seconds: f64,
+    render_seconds: f64,
+    samples: u64,
+    rays: u64,
+    /// Where the system tells.
+    peak_memory_bytes: Option<u64>,
+    non_finite: u64,
+    /// Whether all samples that were asked for were drawn.
+    complete: bool,
+    file: String,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &RenderArgs, painter: &Painter) -> Result<Exit, Failure> {
+    let output = check(args)?;
+    let signals = Signals::listen();
+    limit_threads(args.threads);
+    let session = session::open(&args.scene, args.loudness, painter)?;
+    let output = match output {
+        Some(output) => output,
+        None => default_output(&session)?,
+    };
+    if args.loudness.verbose {
+        describe(&session);
+    }
+
+    let watch = Watch::new(signals.clone(), !args.loudness.quiet, args.time);
+    let rendered = render(&session.scene, &render_options(args), &watch);
+    watch.finish();
+    let mut rendered = rendered.map_err(|error| {
+        painter.error(&error.to_string(), error.help().as_deref());
+        Failure::Shown(exit::of_scene_error(&error))
+    })?;
+
+    annotate(&mut rendered, args.seed);
+    output.write(&rendered.image, &write_options(args))?;
+    tell(args, painter, &session, &rendered.stats, &output)?;
+    Ok(signals.received().unwrap_or(Exit::Done))
+}
+
+/// Finds what is wrong with the command line before any work is done. Without `-o`, the output is known only later.
+fn check(args: &RenderArgs) -> Result<Option<Output>, Failure> {
+    if args.color == Color::Spectral {
+        return Err(Failure::usage("spectral rendering comes with a later version")
+            .with_help("`--color rgb` is what there is"));
+    }
+    let output = args.output.as_deref().map(|path| Output::new(path, args.format)).transpose()?;
+    if args.stats.is_some() && matches!(output, Some(Output::Stdout(_))) {
+        return Err(Failure::usage("`--stats` and `-o -` both want standard output"));
+    }
+    if output.is_none() && args.format.is_some() {
+        return Err(Failure::usage("`--format` is for `-o -`"));
+    }
+    output.iter().try_for_each(Output::check)?;
+    Ok(output)
+}
+
+/// The file that the scene names, else one named after the scene.
+fn default_output(session: &Session) -> Result<Output, Failure> {
+    let path = session.film_filename().unwrap_or_else(|| PathBuf::from(format!("{}.png", session.stem)));
+    let output = Output::File(path);
+    output.check().map_err(|failure| failure.with_help("name another file with `-o`"))?;
+    Ok(output)
+}
+
+/// Lets everything that works in parallel outside the render keep to the same number of threads.
+fn limit_threads(threads: usize) {
+    // It fails only if the pool exists already, and then it is of no consequence.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+}
+
+fn render_options(args: &RenderArgs) -> RenderOptions {
+    // With a time alone, time is what ends the render.
+    let spp = args.spp.or(args.time.map(|_| u32::MAX));
+    RenderOptions {
+        spp,
+        time: args.time,
+        seed: args.seed,
+        threads: args.threads,
+        integrator: args.integrator.clone(),
+    }
+}
+
+fn write_options(args: &RenderArgs) -> WriteOptions {
+    let tone = ToneMapping { exposure: args.exposure, curve: args.tone.into(), ..ToneMapping::default() };
+    WriteOptions { tone, ..WriteOptions::default() }
+}
+
+/// Notes in the image what made it; nothing that differs from run to run.
+fn annotate(rendered: &mut Rendered, seed: u64) {
+    let pixels = (rendered.image.width() * rendered.image.height()).max(1) as u64;
+    let metadata = &mut rendered.image.metadata;
+    metadata.insert("software".into(), concat!("Aureole ", env!("CARGO_PKG_VERSION")).into());
+    metadata.insert("seed".into(), seed.to_string().into());
+    metadata.insert("samplesPerPixel".into(), ((rendered.stats.samples / pixels) as i32).into());
+}
+
+/// With `-v`: what was read and how long it took.
+fn describe(session: &Session) {
+    let counts = session.scene.counts();
+    eprint(&format!(
+        "read in {}, built in {}: {}primitives in {} shapes and {} instances, {} lights\n",
+        duration(session.load_seconds),
+        duration(session.build_seconds),
+        quantity(counts.primitives as f64),
+        counts.shapes,
+        counts.instances,
+        counts.lights,
+    ));
+}
+
+/// The last line, or the figures.
+fn tell(
+    args: &RenderArgs,
+    painter: &Painter,
+    session: &Session,
+    stats: &RenderStats,
+    output: &Output,
+) -> Result<(), Failure> {
+    if stats.non_finite > 0 && !args.loudness.quiet {
+        painter.warning(&format!("{} samples were not finite and are left out", stats.non_finite));
+    }
+    match args.stats {
+        Some(StatsFormat::Json) => {
+            let figures = Stats {
+                load_seconds: session.load_seconds,
+                build_seconds: session.build_seconds,
+                render_seconds: stats.seconds,
+                samples: stats.samples,
+                rays: stats.rays,
+                peak_memory_bytes: peak_memory(),
+                non_finite: stats.non_finite,
+                complete: stats.complete,
+                file: output.to_string(),
+            };
+            print(super::json_line(&figures)?)
+        }
+        None if args.loudness.quiet => Ok(()),
+        None => {
+            let state = if stats.complete || args.time.is_some() { "" } else { " (interrupted)" };
+            eprint(&format!(
+                "{}  {}samples  {}rays/s  {output}{state}\n",
+                duration(stats.seconds),
+                quantity(stats.samples as f64),
+                quantity(stats.rays as f64 / stats.seconds.max(1e-9)),
+            ));
+            Ok(())
+        }
+    }
+}
+
+fn eprint(text: &str) {
+    // Nobody is left to tell when standard error is closed.
+    let _ = std::io::Write::write_all(&mut std::io::stderr(), text.as_bytes());
+}
+
+/// The most memory that the process has had at once, where the system tells.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn the_system_tells_the_peak_memory() {
+        assert!(peak_memory().unwrap() > 1 << 16);
+    }
+}

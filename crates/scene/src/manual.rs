@@ -1,0 +1,40 @@
+//! The manual pages of what the compiler itself understands: films, groups and instances.
+
+use aureole_desc::ParamDoc;
+use aureole_elements::Manual;
+
+const fn param(name: &'static str, ty: &'static str, default: &'static str, doc: &'static str) -> ParamDoc {
+    ParamDoc { name, ty, default, doc }
+}
+
+/// The image plane.
+pub const FILM: Manual = Manual {
+    kind: "film",
+    summary: "The image plane: its size, and the part of it that is rendered.",
+    params: &[
+        param("width", "int", "256", "pixels across"),
+        param("height", "int", "256", "pixels down"),
+        param("crop_x", "int", "0", "first column that is rendered"),
+        param("crop_y", "int", "0", "first row that is rendered"),
+        param("crop_width", "int", "the rest", "columns that are rendered"),
+        param("crop_height", "int", "the rest", "rows that are rendered"),
+        param("filename", "string", "", "where programs write the image unless told otherwise"),
+    ],
+};
+
+/// Shapes that are described once.
+pub const GROUP: Manual = Manual {
+    kind: "group",
+    summary: "Shapes that are seen only through instances.",
+    params: &[param("shapes", "shapes", "", "the shapes")],
+};
+
+/// A group, placed.
+pub const INSTANCE: Manual = Manual {
+    kind: "instance",
+    summary: "A group, placed in the world; any number of instances share its memory.",
+    params: &[
+        param("group", "shape", "", "the group"),
+        param("world_from_object", "transform", "identity", "where it is"),
+    ],
+};
