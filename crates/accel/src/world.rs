@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use aureole_math::{Bounds3, Point3, Ray, Transform};
 
-use crate::bvh::{Bvh8, Leaf, Stats, TraversalRay, build};
+use crate::bvh::{Bvh8, Leaf, Stack, Stats, TraversalRay, build};
 use crate::triangle::{self, Block, LANES, ShearedRay};
 use crate::{AccelError, Config, Geometry, Hit, NO_INSTANCE, Structure, UserShapes};
 
@@ -142,18 +142,29 @@ impl World {
     /// The nearest hit of a ray in `(t_min, t_max)`.
     #[inline]
     pub fn closest_hit<U: UserShapes>(&self, ray: &Ray, user: &U) -> Option<Hit> {
+        let hit = self.nearest(ray, user, &mut Stack::default());
+        hit.is_some().then_some(hit)
+    }
+
+    /// The nearest hit, or [`Hit::NONE`].
+    #[inline]
+    fn nearest<U: UserShapes>(&self, ray: &Ray, user: &U, stack: &mut Stack) -> Hit {
         let mut best = Hit { t: ray.t_max, ..Hit::NONE };
-        self.closest(ray, user, &mut best);
-        best.is_some().then_some(best)
+        self.closest(ray, user, stack, &mut best);
+        if best.is_some() { best } else { Hit::NONE }
     }
 
     /// Whether anything lies on the ray in `(t_min, t_max)`.
     #[inline]
     pub fn occluded<U: UserShapes>(&self, ray: &Ray, user: &U) -> bool {
+        self.blocked(ray, user, &mut Stack::default())
+    }
+
+    fn blocked<U: UserShapes>(&self, ray: &Ray, user: &U, stack: &mut Stack) -> bool {
         let mut blocked = false;
         let sheared = ShearedRay::new(ray);
         let walk = TraversalRay::new(ray);
-        self.each_block(&walk, ray.t_max, |blocks| {
+        self.each_block(&walk, ray.t_max, stack, |blocks| {
             for block in blocks {
                 triangle::intersect(block, &sheared, ray.t_max, |hit| {
                     blocked |=
@@ -165,7 +176,7 @@ impl World {
         if blocked || self.objects.is_empty() {
             return blocked;
         }
-        self.each_object(&walk, ray.t_max, |objects| {
+        self.each_object(&walk, ray.t_max, stack, |objects| {
             blocked |= objects.iter().any(|object| self.object_blocks(object, ray, user));
             if blocked { Leaf::Stop } else { Leaf::Continue(ray.t_max) }
         });
@@ -174,23 +185,25 @@ impl World {
 
     /// [`closest_hit`](Self::closest_hit) for many rays; [`Hit::NONE`] where there is none.
     pub fn closest_hits<U: UserShapes>(&self, rays: &[Ray], hits: &mut [Hit], user: &U) {
+        let mut stack = Stack::default();
         for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.closest_hit(ray, user).unwrap_or(Hit::NONE);
+            *hit = self.nearest(ray, user, &mut stack);
         }
     }
 
     /// [`occluded`](Self::occluded) for many rays.
     pub fn occluded_many<U: UserShapes>(&self, rays: &[Ray], blocked: &mut [bool], user: &U) {
+        let mut stack = Stack::default();
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.occluded(ray, user);
+            *blocked = self.blocked(ray, user, &mut stack);
         }
     }
 
-    fn closest<U: UserShapes>(&self, ray: &Ray, user: &U, best: &mut Hit) {
+    fn closest<U: UserShapes>(&self, ray: &Ray, user: &U, stack: &mut Stack, best: &mut Hit) {
         let sheared = ShearedRay::new(ray);
         let walk = TraversalRay::new(ray);
         let t_max = best.t;
-        self.each_block(&walk, t_max, |blocks| {
+        self.each_block(&walk, t_max, stack, |blocks| {
             for block in blocks {
                 let limit = best.t;
                 triangle::intersect(block, &sheared, limit, |hit| {
@@ -202,7 +215,7 @@ impl World {
         });
         if !self.objects.is_empty() {
             let t_max = best.t;
-            self.each_object(&walk, t_max, |objects| {
+            self.each_object(&walk, t_max, stack, |objects| {
                 for object in objects {
                     self.object_closest(object, ray, user, best);
                 }
@@ -240,7 +253,8 @@ impl World {
             Object::Instance { geometry, level, object_from_world } => {
                 let local = object_from_world.ray(ray);
                 let mut inner = Hit { t: best.t, ..Hit::NONE };
-                level.closest(&local, user, &mut inner);
+                // The outer walk's stack is in use: instances get their own.
+                level.closest(&local, user, &mut Stack::default(), &mut inner);
                 let hit = Hit { instance: *geometry, ..inner };
                 if inner.is_some() && hit.beats(best) {
                     *best = hit;
@@ -265,21 +279,33 @@ impl World {
     }
 
     #[inline]
-    fn each_block(&self, walk: &TraversalRay, t_max: f32, mut visit: impl FnMut(&[Block]) -> Leaf) {
+    fn each_block(
+        &self,
+        walk: &TraversalRay,
+        t_max: f32,
+        stack: &mut Stack,
+        mut visit: impl FnMut(&[Block]) -> Leaf,
+    ) {
         if self.structure == Structure::List {
             visit(&self.blocks);
             return;
         }
-        self.triangles.walk(walk, t_max, |first, count| visit(&self.blocks[first..first + count]));
+        self.triangles.walk(walk, t_max, stack, |first, count| visit(&self.blocks[first..first + count]));
     }
 
     #[inline]
-    fn each_object(&self, walk: &TraversalRay, t_max: f32, mut visit: impl FnMut(&[Object]) -> Leaf) {
+    fn each_object(
+        &self,
+        walk: &TraversalRay,
+        t_max: f32,
+        stack: &mut Stack,
+        mut visit: impl FnMut(&[Object]) -> Leaf,
+    ) {
         if self.structure == Structure::List {
             visit(&self.objects);
             return;
         }
-        self.objects_bvh.walk(walk, t_max, |first, count| visit(&self.objects[first..first + count]));
+        self.objects_bvh.walk(walk, t_max, stack, |first, count| visit(&self.objects[first..first + count]));
     }
 }
 

@@ -4,8 +4,16 @@ use aureole_math::{Ray, Vector3, gamma};
 
 use super::node::{Bvh8, COUNT_BITS, LEAF, Node, WIDTH};
 
-/// Entries that the walk may leave for later: seven a level, for a depth that the builder bounds.
-const STACK: usize = 512;
+/// Children left for later and where the ray enters them: seven a level, for a depth that the builder bounds.
+///
+/// Kept from ray to ray: clearing it would cost more than many a walk.
+pub(crate) struct Stack([(u32, f32); 512]);
+
+impl Default for Stack {
+    fn default() -> Self {
+        Self([(0, 0.0); 512])
+    }
+}
 
 /// A ray made ready for the box test.
 #[derive(Clone, Copy, Debug)]
@@ -70,29 +78,47 @@ pub(crate) enum Leaf {
 impl Bvh8 {
     /// Visits the leaves that a ray may meet, nearest first, with their first item and number of items.
     #[inline]
-    pub(crate) fn walk(&self, ray: &TraversalRay, t_max: f32, leaf: impl FnMut(usize, usize) -> Leaf) {
+    pub(crate) fn walk(
+        &self,
+        ray: &TraversalRay,
+        t_max: f32,
+        stack: &mut Stack,
+        leaf: impl FnMut(usize, usize) -> Leaf,
+    ) {
         #[cfg(target_arch = "x86_64")]
         if crate::triangle::simd::has_avx2() {
             #[expect(unsafe_code, reason = "the instruction set was just found to be there")]
             // SAFETY: `has_avx2` says that AVX2 is available.
-            return unsafe { self.walk_avx2(ray, t_max, leaf) };
+            return unsafe { self.walk_avx2(ray, t_max, stack, leaf) };
         }
-        self.walk_generic(ray, t_max, leaf);
+        self.walk_generic(ray, t_max, stack, leaf);
     }
 
     /// The same code, compiled for wider registers; no operation is fused, so the results are the same.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-    fn walk_avx2(&self, ray: &TraversalRay, t_max: f32, leaf: impl FnMut(usize, usize) -> Leaf) {
-        self.walk_generic(ray, t_max, leaf);
+    fn walk_avx2(
+        &self,
+        ray: &TraversalRay,
+        t_max: f32,
+        stack: &mut Stack,
+        leaf: impl FnMut(usize, usize) -> Leaf,
+    ) {
+        self.walk_generic(ray, t_max, stack, leaf);
     }
 
     #[inline(always)]
-    fn walk_generic(&self, ray: &TraversalRay, mut t_max: f32, mut leaf: impl FnMut(usize, usize) -> Leaf) {
+    fn walk_generic(
+        &self,
+        ray: &TraversalRay,
+        mut t_max: f32,
+        stack: &mut Stack,
+        mut leaf: impl FnMut(usize, usize) -> Leaf,
+    ) {
         if self.nodes.is_empty() || t_max.is_nan() {
             return;
         }
-        let mut stack = [(0_u32, 0.0_f32); STACK];
+        let stack = &mut stack.0;
         let mut top = 0;
         let mut current = 0_u32;
         loop {
