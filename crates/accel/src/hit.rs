@@ -65,7 +65,7 @@ impl Hit {
     }
 
     /// Which of two hits counts: the nearer one, and of equally near ones that with the smaller numbers.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn beats(&self, other: &Self) -> bool {
         let id = |hit: &Self| (hit.instance, hit.geometry, hit.primitive);
         self.t < other.t || (self.t == other.t && id(self) < id(other))

@@ -20,6 +20,8 @@ mod bvh;
 mod config;
 mod error;
 mod hit;
+mod query;
+mod simd;
 mod triangle;
 mod world;
 

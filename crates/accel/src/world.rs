@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use aureole_math::{Bounds3, Point3, Ray, Transform};
 
-use crate::bvh::{Bvh8, Leaf, Stack, Stats, TraversalRay, build};
-use crate::triangle::{self, Block, LANES, ShearedRay};
-use crate::{AccelError, Config, Geometry, Hit, NO_INSTANCE, Structure, UserShapes};
+use crate::bvh::{Bvh8, Stats, build};
+use crate::triangle::{Block, LANES};
+use crate::{AccelError, Config, Geometry, Hit, Structure, UserShapes, query, simd};
 
 /// Something that is not a triangle.
 #[derive(Clone, Debug)]
-enum Object {
+pub(crate) enum Object {
     User { geometry: u32, primitive: u32 },
     Instance { geometry: u32, level: Arc<World>, object_from_world: Transform },
 }
@@ -18,13 +18,13 @@ enum Object {
 /// Geometries ready for rays.
 #[derive(Clone, Debug)]
 pub struct World {
-    tag: u32,
+    pub(crate) tag: u32,
     bounds: Bounds3,
-    triangles: Bvh8,
-    blocks: Vec<Block>,
-    objects_bvh: Bvh8,
-    objects: Vec<Object>,
-    structure: Structure,
+    pub(crate) triangles: Bvh8,
+    pub(crate) blocks: Vec<Block>,
+    pub(crate) objects_bvh: Bvh8,
+    pub(crate) objects: Vec<Object>,
+    pub(crate) structure: Structure,
 }
 
 impl World {
@@ -140,172 +140,27 @@ impl World {
     }
 
     /// The nearest hit of a ray in `(t_min, t_max)`.
-    #[inline]
     pub fn closest_hit<U: UserShapes>(&self, ray: &Ray, user: &U) -> Option<Hit> {
-        let hit = self.nearest(ray, user, &mut Stack::default());
-        hit.is_some().then_some(hit)
-    }
-
-    /// The nearest hit, or [`Hit::NONE`].
-    #[inline]
-    fn nearest<U: UserShapes>(&self, ray: &Ray, user: &U, stack: &mut Stack) -> Hit {
-        let mut best = Hit { t: ray.t_max, ..Hit::NONE };
-        self.closest(ray, user, stack, &mut best);
-        if best.is_some() { best } else { Hit::NONE }
+        let mut hit = [Hit::NONE];
+        self.closest_hits(std::slice::from_ref(ray), &mut hit, user);
+        hit[0].is_some().then_some(hit[0])
     }
 
     /// Whether anything lies on the ray in `(t_min, t_max)`.
-    #[inline]
     pub fn occluded<U: UserShapes>(&self, ray: &Ray, user: &U) -> bool {
-        self.blocked(ray, user, &mut Stack::default())
-    }
-
-    fn blocked<U: UserShapes>(&self, ray: &Ray, user: &U, stack: &mut Stack) -> bool {
-        let mut blocked = false;
-        let sheared = ShearedRay::new(ray);
-        let walk = TraversalRay::new(ray);
-        self.each_block(&walk, ray.t_max, stack, |blocks| {
-            for block in blocks {
-                triangle::intersect(block, &sheared, ray.t_max, |hit| {
-                    blocked |=
-                        hit.t < ray.t_max && (!U::HAS_FILTER || user.accept(self.tag, &block.hit(&hit), ray));
-                });
-            }
-            if blocked { Leaf::Stop } else { Leaf::Continue(ray.t_max) }
-        });
-        if blocked || self.objects.is_empty() {
-            return blocked;
-        }
-        self.each_object(&walk, ray.t_max, stack, |objects| {
-            blocked |= objects.iter().any(|object| self.object_blocks(object, ray, user));
-            if blocked { Leaf::Stop } else { Leaf::Continue(ray.t_max) }
-        });
-        blocked
+        let mut blocked = [false];
+        self.occluded_many(std::slice::from_ref(ray), &mut blocked, user);
+        blocked[0]
     }
 
     /// [`closest_hit`](Self::closest_hit) for many rays; [`Hit::NONE`] where there is none.
     pub fn closest_hits<U: UserShapes>(&self, rays: &[Ray], hits: &mut [Hit], user: &U) {
-        let mut stack = Stack::default();
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.nearest(ray, user, &mut stack);
-        }
+        simd::run(query::Closest { world: self, rays, hits, user });
     }
 
     /// [`occluded`](Self::occluded) for many rays.
     pub fn occluded_many<U: UserShapes>(&self, rays: &[Ray], blocked: &mut [bool], user: &U) {
-        let mut stack = Stack::default();
-        for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.blocked(ray, user, &mut stack);
-        }
-    }
-
-    fn closest<U: UserShapes>(&self, ray: &Ray, user: &U, stack: &mut Stack, best: &mut Hit) {
-        let sheared = ShearedRay::new(ray);
-        let walk = TraversalRay::new(ray);
-        let t_max = best.t;
-        self.each_block(&walk, t_max, stack, |blocks| {
-            for block in blocks {
-                let limit = best.t;
-                triangle::intersect(block, &sheared, limit, |hit| {
-                    let hit = block.hit(&hit);
-                    self.offer(hit, ray, user, best);
-                });
-            }
-            Leaf::Continue(best.t)
-        });
-        if !self.objects.is_empty() {
-            let t_max = best.t;
-            self.each_object(&walk, t_max, stack, |objects| {
-                for object in objects {
-                    self.object_closest(object, ray, user, best);
-                }
-                Leaf::Continue(best.t)
-            });
-        }
-    }
-
-    /// Takes a hit when it is nearer than the best one and accepted. The ray's own end does not count as a hit.
-    #[inline]
-    fn offer<U: UserShapes>(&self, hit: Hit, ray: &Ray, user: &U, best: &mut Hit) {
-        let inside = hit.t < ray.t_max;
-        if inside && hit.beats(best) && (!U::HAS_FILTER || user.accept(self.tag, &hit, ray)) {
-            *best = hit;
-        }
-    }
-
-    fn object_closest<U: UserShapes>(&self, object: &Object, ray: &Ray, user: &U, best: &mut Hit) {
-        match object {
-            Object::User { geometry, primitive } => {
-                // One step beyond the best hit, so that an equally near shape can win by its number.
-                let ray_to_best = ray.until(best.t.next_up().min(ray.t_max));
-                if let Some(found) = user.intersect(self.tag, *geometry, *primitive, &ray_to_best) {
-                    let hit = Hit {
-                        t: found.t,
-                        u: found.u,
-                        v: found.v,
-                        primitive: *primitive,
-                        geometry: *geometry,
-                        instance: NO_INSTANCE,
-                    };
-                    self.offer(hit, ray, user, best);
-                }
-            }
-            Object::Instance { geometry, level, object_from_world } => {
-                let local = object_from_world.ray(ray);
-                let mut inner = Hit { t: best.t, ..Hit::NONE };
-                // The outer walk's stack is in use: instances get their own.
-                level.closest(&local, user, &mut Stack::default(), &mut inner);
-                let hit = Hit { instance: *geometry, ..inner };
-                if inner.is_some() && hit.beats(best) {
-                    *best = hit;
-                }
-            }
-        }
-    }
-
-    fn object_blocks<U: UserShapes>(&self, object: &Object, ray: &Ray, user: &U) -> bool {
-        match object {
-            Object::User { geometry, primitive } => {
-                let Some(found) = user.intersect(self.tag, *geometry, *primitive, ray) else { return false };
-                let (primitive, geometry) = (*primitive, *geometry);
-                let hit =
-                    Hit { t: found.t, u: found.u, v: found.v, primitive, geometry, instance: NO_INSTANCE };
-                found.t < ray.t_max && (!U::HAS_FILTER || user.accept(self.tag, &hit, ray))
-            }
-            Object::Instance { level, object_from_world, .. } => {
-                level.occluded(&object_from_world.ray(ray), user)
-            }
-        }
-    }
-
-    #[inline]
-    fn each_block(
-        &self,
-        walk: &TraversalRay,
-        t_max: f32,
-        stack: &mut Stack,
-        mut visit: impl FnMut(&[Block]) -> Leaf,
-    ) {
-        if self.structure == Structure::List {
-            visit(&self.blocks);
-            return;
-        }
-        self.triangles.walk(walk, t_max, stack, |first, count| visit(&self.blocks[first..first + count]));
-    }
-
-    #[inline]
-    fn each_object(
-        &self,
-        walk: &TraversalRay,
-        t_max: f32,
-        stack: &mut Stack,
-        mut visit: impl FnMut(&[Object]) -> Leaf,
-    ) {
-        if self.structure == Structure::List {
-            visit(&self.objects);
-            return;
-        }
-        self.objects_bvh.walk(walk, t_max, stack, |first, count| visit(&self.objects[first..first + count]));
+        simd::run(query::Occluded { world: self, rays, blocked, user });
     }
 }
 

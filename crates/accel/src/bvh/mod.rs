@@ -7,4 +7,4 @@ mod traverse;
 pub(crate) use build::build;
 pub(crate) use node::Bvh8;
 pub use node::Stats;
-pub(crate) use traverse::{Leaf, Stack, TraversalRay};
+pub(crate) use traverse::{Leaf, Stack, TraversalRay, VisitLeaf};

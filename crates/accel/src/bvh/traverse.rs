@@ -26,7 +26,7 @@ pub(crate) struct TraversalRay {
 }
 
 impl TraversalRay {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
         // A zero component would make 0 · ∞ = NaN of planes through the origin; a huge reciprocal does not.
         let safe = |d: f32| if d.abs() < 1e-30 { 1e-30_f32.copysign(d) } else { d };
@@ -75,45 +75,21 @@ pub(crate) enum Leaf {
     Stop,
 }
 
+/// Tests leaves. A trait rather than a closure, so that it can insist on being compiled into the walk.
+pub(crate) trait VisitLeaf {
+    /// Tests the packed things from `first` on.
+    fn visit(&mut self, first: usize, count: usize) -> Leaf;
+}
+
 impl Bvh8 {
     /// Visits the leaves that a ray may meet, nearest first, with their first item and number of items.
-    #[inline]
-    pub(crate) fn walk(
-        &self,
-        ray: &TraversalRay,
-        t_max: f32,
-        stack: &mut Stack,
-        leaf: impl FnMut(usize, usize) -> Leaf,
-    ) {
-        #[cfg(target_arch = "x86_64")]
-        if crate::triangle::simd::has_avx2() {
-            #[expect(unsafe_code, reason = "the instruction set was just found to be there")]
-            // SAFETY: `has_avx2` says that AVX2 is available.
-            return unsafe { self.walk_avx2(ray, t_max, stack, leaf) };
-        }
-        self.walk_generic(ray, t_max, stack, leaf);
-    }
-
-    /// The same code, compiled for wider registers; no operation is fused, so the results are the same.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-    fn walk_avx2(
-        &self,
-        ray: &TraversalRay,
-        t_max: f32,
-        stack: &mut Stack,
-        leaf: impl FnMut(usize, usize) -> Leaf,
-    ) {
-        self.walk_generic(ray, t_max, stack, leaf);
-    }
-
     #[inline(always)]
-    fn walk_generic(
+    pub(crate) fn walk(
         &self,
         ray: &TraversalRay,
         mut t_max: f32,
         stack: &mut Stack,
-        mut leaf: impl FnMut(usize, usize) -> Leaf,
+        visitor: &mut impl VisitLeaf,
     ) {
         if self.nodes.is_empty() || t_max.is_nan() {
             return;
@@ -124,7 +100,7 @@ impl Bvh8 {
         loop {
             if current & LEAF != 0 {
                 let first = (current & !LEAF) >> COUNT_BITS;
-                match leaf(first as usize, (current & ((1 << COUNT_BITS) - 1)) as usize) {
+                match visitor.visit(first as usize, (current & ((1 << COUNT_BITS) - 1)) as usize) {
                     Leaf::Continue(t) => t_max = t,
                     Leaf::Stop => return,
                 }

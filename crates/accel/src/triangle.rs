@@ -3,8 +3,6 @@
 //! # References
 //! [Woop, Benthin and Wald 2013] "Watertight Ray/Triangle Intersection", JCGT 2(1).
 
-pub(crate) mod simd;
-
 use aureole_math::{Ray, gamma};
 
 use crate::Hit;
@@ -50,7 +48,7 @@ pub(crate) struct ShearedRay {
 }
 
 impl ShearedRay {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
         let d = ray.direction;
         let z = d.abs().max_axis();
@@ -142,7 +140,7 @@ pub(crate) fn intersect(block: &Block, ray: &ShearedRay, t_max: f32, mut found: 
 ///
 /// # References
 /// [PBRT4] section 6.8.7, for sheared vertices and edge functions.
-#[inline]
+#[inline(always)]
 fn error_bound(edges: [f32; 3], vertices: [[f32; 3]; 3], inv_det: f32) -> f32 {
     let largest = |values: [f32; 3]| values[0].abs().max(values[1].abs()).max(values[2].abs());
     let [x, y, z] = [0, 1, 2].map(|axis| largest(vertices.map(|v| v[axis])));
@@ -154,7 +152,7 @@ fn error_bound(edges: [f32; 3], vertices: [[f32; 3]; 3], inv_det: f32) -> f32 {
 
 impl Block {
     /// The hit with the triangle's numbers.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn hit(&self, hit: &BlockHit) -> Hit {
         Hit {
             t: hit.t,
