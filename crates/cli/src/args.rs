@@ -67,19 +67,18 @@ pub(crate) struct SceneArgs {
 
 /// What a file may ask for.
 #[derive(Args, Clone, Copy, Debug, Default)]
-#[command(next_help_heading = "Limits")]
 pub(crate) struct LimitArgs {
     /// Pixels of an image, rendered or read
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = "Limits")]
     pub max_pixels: Option<u64>,
     /// Bytes of a file after unpacking
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = "Limits")]
     pub max_file_bytes: Option<u64>,
     /// Vertices or triangles of a mesh
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = "Limits")]
     pub max_mesh_elements: Option<u64>,
     /// Includes within includes
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = "Limits")]
     pub max_include_depth: Option<usize>,
 }
 
@@ -87,10 +86,10 @@ pub(crate) struct LimitArgs {
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub(crate) struct Loudness {
     /// Say nothing but errors
-    #[arg(short, long, conflicts_with = "verbose")]
+    #[arg(short, long, help_heading = "Messages", conflicts_with = "verbose")]
     pub quiet: bool,
     /// Say more: all warnings, where the time goes
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = "Messages")]
     pub verbose: bool,
 }
 
@@ -104,8 +103,6 @@ pub(crate) struct Loudness {
   aureole render scene.xml --crop 0.4,0.4,0.6,0.6 -o - > detail.png
   aureole render gallery:glass --integrator whitted --stats json")]
 pub(crate) struct RenderArgs {
-    #[command(flatten)]
-    pub scene: SceneArgs,
     /// The image; `-` is standard output [default: the scene's own name for it, else SCENE.png here]
     #[arg(short, long, value_name = "FILE", visible_alias = "outfile", help_heading = "Image")]
     pub output: Option<PathBuf>,
@@ -151,10 +148,12 @@ pub(crate) struct RenderArgs {
     #[arg(long, default_value = "rgb", help_heading = "Sampling")]
     pub color: Color,
     /// Print figures on standard output when done, instead of a line on standard error
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, value_name = "FORMAT", help_heading = "Messages")]
     pub stats: Option<StatsFormat>,
     #[command(flatten)]
     pub loudness: Loudness,
+    #[command(flatten)]
+    pub scene: SceneArgs,
 }
 
 /// `aureole info`

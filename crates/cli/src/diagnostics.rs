@@ -164,8 +164,10 @@ impl Excerpt {
         let to = ceil_char(text, end.min(start + EXCERPT) + EXCERPT / 2).min(line_end).max(start);
         let (before, after) =
             (if from > line_start { "… " } else { "" }, if to < line_end { " …" } else { "" });
-        let shown = format!("{before}{}{after} ", &text[from..to]);
         let length = (end.min(to) - start).max(1);
+        // The mark of what is missing at the end of a line needs something to stand under.
+        let room = if start + length > to && after.is_empty() { " " } else { "" };
+        let shown = format!("{before}{}{after}{room}", &text[from..to]);
         let mark = (before.len() + start - from, length).into();
         let file = location.path.display().to_string();
         Some(Self { file, line, column, text: shown, mark })
