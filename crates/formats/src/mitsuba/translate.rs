@@ -187,8 +187,7 @@ impl<'a> Translator<'a, '_, '_> {
         let mut search = self.search.clone();
         search.push_front(folder.to_owned());
         let path = search.resolve(&file);
-        if !path.exists() {
-            let source = std::io::Error::from(std::io::ErrorKind::NotFound);
+        if let Err(source) = path.metadata() {
             return Err(SceneError::Read { path, source, at });
         }
         Ok((path, at))

@@ -1,0 +1,137 @@
+use std::path::Path;
+
+use aureole_desc::{Report, SceneDesc, SceneError, Sources};
+
+use super::{read_with, show};
+use crate::{LoadOptions, load};
+
+/// Writes files into a folder of their own.
+fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+/// Reads a file; an error comes with the file's name, line and column.
+fn read(path: &Path) -> Result<(SceneDesc, Report), String> {
+    let (mut sources, mut report) = (Sources::default(), Report::default());
+    let result = load(path, &LoadOptions::default(), &mut sources, &mut report);
+    let place = |error: &SceneError| {
+        let place = sources.locate(error.span()).unwrap();
+        let (line, column) = place.line_column.unwrap();
+        format!("{}:{line}:{column}", place.path.file_name().unwrap().to_string_lossy())
+    };
+    match result {
+        Ok(scene) => Ok((scene, report)),
+        Err(error) => Err(format!("{}: {error}", place(&error))),
+    }
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0.25\nf 1/1 2/1 3/1\n";
+
+#[test]
+fn includes_carry_defaults_folders_and_ids() {
+    let folder = folder(&[
+        (
+            "main.xml",
+            "<scene version=\"3.0.0\"><default name=\"k\" value=\"2\"/><include filename=\"parts/a.xml\"/>\
+            <shape type=\"ply\"><string name=\"filename\" value=\"t.ply\"/><ref id=\"other\"/></shape></scene>",
+        ),
+        (
+            "parts/a.xml",
+            "<scene version=\"3.0.0\"><path value=\"../meshes\"/><default name=\"k\" value=\"9\"/><default name=\"l\" value=\"4\"/>\
+            <include filename=\"parts/b.xml\"/><alias id=\"red\" as=\"other\"/></scene>",
+        ),
+        (
+            "parts/b.xml",
+            "<bsdf type=\"plastic\" id=\"red\"><float name=\"a\" value=\"$k\"/><float name=\"b\" value=\"$l\"/></bsdf>",
+        ),
+        (
+            "meshes/t.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+            element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+        ),
+    ]);
+    let (scene, _) = read(&folder.path().join("main.xml")).unwrap();
+    assert_eq!(show(&scene, scene.shapes[0]), "mesh(mesh=a mesh bsdf=plastic(a=2 b=4))");
+}
+
+#[test]
+fn meshes_are_as_mitsuba_reads_them() {
+    let shape = |inside: &str| {
+        format!("<shape type=\"obj\"><string name=\"filename\" value=\"t.obj\"/>{inside}</shape>")
+    };
+    let flags =
+        "<boolean name=\"face_normals\" value=\"true\"/><boolean name=\"flip_tex_coords\" value=\"false\"/>";
+    let text = format!("<scene version=\"3.0.0\">{}{}{}</scene>", shape(""), shape(""), shape(flags));
+    let folder = folder(&[("s.xml", &text), ("t.obj", TRIANGLE)]);
+    let (scene, _) = read(&folder.path().join("s.xml")).unwrap();
+    let mut meshes = scene
+        .shapes
+        .clone()
+        .into_iter()
+        .map(|id| scene[id].params.clone().try_mesh("mesh").unwrap().unwrap());
+    let (first, same, flat) = (meshes.next().unwrap(), meshes.next().unwrap(), meshes.next().unwrap());
+    assert_eq!((first.uvs[0], first.normals.len()), ([0.0, 0.75], 3), "v turned round, normals made up");
+    assert!(std::sync::Arc::ptr_eq(&first, &same), "a file is read once");
+    assert_eq!((flat.uvs[0], flat.normals.len()), ([0.0, 0.25], 0));
+    assert!(scene[scene.shapes[2]].params.has("face_normals"));
+}
+
+#[test]
+fn bitmaps_are_turned_round() {
+    let text = "<scene version=\"3.0.0\"><shape type=\"disk\"><bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"bitmap\">\
+        <string name=\"filename\" value=\"a.png\"/><boolean name=\"raw\" value=\"true\"/><string name=\"wrap_mode\" value=\"clamp\"/>\
+        <transform name=\"to_uv\"><scale value=\"2\"/></transform></texture></bsdf></shape></scene>";
+    let folder = folder(&[("s.xml", text), ("a.png", "")]);
+    let (scene, _) = read(&folder.path().join("s.xml")).unwrap();
+    assert_eq!(
+        show(&scene, scene.shapes[0]),
+        "disk(bsdf=diffuse(reflectance=bitmap(filename=a.png encoding=linear \
+         to_uv=[[2.0, 0.0, 0.0, 0.0], [0.0, -2.0, 0.0, 1.0], [0.0, 0.0, 2.0, 0.0], [0.0, 0.0, 0.0, 1.0]] wrap=clamp)))"
+    );
+}
+
+#[test]
+fn files_that_are_missing_or_go_in_circles() {
+    let folder = folder(&[
+        ("circle.xml", "<scene version=\"3.0.0\">\n  <include filename=\"b.xml\"/></scene>"),
+        ("b.xml", "<scene version=\"3.0.0\">\n\n<include filename=\"circle.xml\"/></scene>"),
+        (
+            "missing.xml",
+            "<scene version=\"3.0.0\">\n <shape type=\"ply\">\n  <string name=\"filename\" value=\"no.ply\"/>\n </shape></scene>",
+        ),
+        ("lost.xml", "<scene version=\"3.0.0\"><include filename=\"nowhere.xml\"/></scene>"),
+        (
+            "broken.xml",
+            "<scene version=\"3.0.0\"><shape type=\"obj\"><string name=\"filename\" value=\"t.obj\"/></shape></scene>",
+        ),
+        ("t.obj", "v 0 0 0\nf 1 2 3\n"),
+    ]);
+    let wrong = |name: &str| read(&folder.path().join(name)).unwrap_err();
+    assert_eq!(
+        wrong("circle.xml"),
+        "b.xml:3:20: files include each other in a circle: circle.xml → b.xml → circle.xml"
+    );
+    let missing = wrong("missing.xml");
+    assert!(missing.starts_with("missing.xml:3:34: cannot read") && missing.contains("no.ply"), "{missing}");
+    let lost = wrong("lost.xml");
+    assert!(lost.starts_with("lost.xml:1:42: cannot read"), "{lost}");
+    assert!(wrong("broken.xml").ends_with("line 2: index 2 points outside of the 1 vertices so far"));
+}
+
+#[test]
+fn definitions_of_the_user_win() {
+    let text = "<scene version=\"3.0.0\"><default name=\"n\" value=\"1\"/><shape type=\"$kind\"><float name=\"radius\" value=\"$n\"/></shape></scene>";
+    let define = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+    let defines = vec![define("n", "7"), define("kind", "sphere"), define("other", "0")];
+    let outcome = read_with(text, &LoadOptions { defines, ..LoadOptions::default() });
+    let scene = outcome.result.unwrap();
+    assert_eq!(show(&scene, scene.shapes[0]), "sphere(radius=7)");
+    assert_eq!(outcome.report.warnings.len(), 1);
+    assert!(outcome.report.warnings[0].message.contains("$other"));
+}
