@@ -120,7 +120,7 @@ fn files_that_are_missing_or_go_in_circles() {
     let missing = wrong("missing.xml");
     assert!(missing.starts_with("missing.xml:3:34: cannot read") && missing.contains("no.ply"), "{missing}");
     let lost = wrong("lost.xml");
-    assert!(lost.starts_with("lost.xml:1:42: cannot read"), "{lost}");
+    assert!(lost.starts_with("lost.xml:1:43: cannot read"), "{lost}");
     assert!(wrong("broken.xml").ends_with("line 2: index 2 points outside of the 1 vertices so far"));
 }
 
