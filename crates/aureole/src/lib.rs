@@ -37,7 +37,7 @@ pub use aureole_spectrum as spectrum;
 /// What nearly every program needs.
 pub mod prelude {
     pub use aureole_desc::{
-        Family, Node, NodeId, Params, Report, SceneDesc, SceneError, Sources, Span, Value,
+        Family, Node, NodeId, ParamDoc, Params, Report, SceneDesc, SceneError, Sources, Span, Value,
     };
     pub use aureole_formats::{LoadOptions, load, load_text};
     pub use aureole_image::{Image, ToneMapping, WriteOptions, write_image};

@@ -23,6 +23,8 @@ pub struct CompileOptions {
     pub camera: usize,
     /// What a scene may ask for.
     pub limits: Limits,
+    /// Kinds of shapes that the program defines itself.
+    pub shapes: Vec<shape::ShapeKind>,
 }
 
 /// Builds every element of a description and the structures that answer rays.
@@ -155,10 +157,17 @@ impl Compiler<'_> {
         Ok((world, level as u32))
     }
 
+    fn build_shape(&mut self, node: &Node) -> Result<Shape, SceneError> {
+        match self.options.shapes.iter().find(|kind| kind.manual.kind == node.kind) {
+            Some(kind) => kind.build(node, &mut self.resolve),
+            None => Shape::build(node, &mut self.resolve),
+        }
+    }
+
     /// Builds a shape that is really there, with its material, emission and cut-out.
     fn solid(&mut self, level: usize, node: NodeId) -> Result<Option<Geometry>, SceneError> {
         let desc = self.resolve.desc;
-        let built = Shape::build(&desc[node], &mut self.resolve)?;
+        let built = self.build_shape(&desc[node])?;
         let geometry = match built.geometry() {
             shape::Geometry::Triangles { positions, indices } => {
                 Some(Geometry::Triangles { positions, indices })

@@ -12,7 +12,7 @@ use aureole_desc::{ParamDoc, Params, SceneError, Span};
 use aureole_math::{Bounds3, Frame, Point2, Point3, Ray, Transform, Vector3, warp};
 
 use super::quadric::ObjectSpace;
-use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
+use super::{Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
 use crate::{Element, Resolver};
 
 /// The unit cylinder around Z from z = 0 to 1 in an object space.
@@ -83,10 +83,6 @@ impl Element for Cylinder {
 }
 
 impl ShapeOps for Cylinder {
-    fn geometry(&self) -> Geometry {
-        Geometry::Boxes(vec![self.bounds()])
-    }
-
     fn bounds(&self) -> Bounds3 {
         let unit = Bounds3::new(Point3::new(-1.0, -1.0, 0.0), Point3::new(1.0, 1.0, 1.0));
         self.space.world_from_object.bounds(&unit)

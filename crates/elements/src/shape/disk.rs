@@ -14,7 +14,7 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Bounds3, Point2, Point3, Ray, Vector3, warp};
 
 use super::quadric::ObjectSpace;
-use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
+use super::{Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
 use crate::{Element, Resolver};
 
 /// How texture coordinates run over a disk.
@@ -87,10 +87,6 @@ impl Disk {
 }
 
 impl ShapeOps for Disk {
-    fn geometry(&self) -> Geometry {
-        Geometry::Boxes(vec![self.bounds()])
-    }
-
     fn bounds(&self) -> Bounds3 {
         let corner = Vector3::new(self.radius, self.radius, 0.0);
         let middle = Point3::new(0.0, 0.0, self.height);

@@ -5,6 +5,7 @@
 
 mod bilinear_mesh;
 mod cube;
+mod custom;
 mod cylinder;
 mod disk;
 mod mesh;
@@ -22,6 +23,7 @@ use aureole_math::{Bounds3, Point2, Point3, Ray, Vector3};
 
 pub use bilinear_mesh::BilinearMesh;
 pub use cube::Cube;
+pub use custom::ShapeKind;
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use mesh::TriangleMesh;
@@ -60,8 +62,10 @@ pub enum Geometry {
 
 /// What every shape can do: whatever can be intersected and bounded can be rendered, accelerated and made to shine.
 pub trait ShapeOps: Debug + Send + Sync {
-    /// How the accelerator sees the shape.
-    fn geometry(&self) -> Geometry;
+    /// How the accelerator sees the shape: by its box, unless it says otherwise.
+    fn geometry(&self) -> Geometry {
+        Geometry::Boxes(vec![self.bounds()])
+    }
 
     /// The box around the shape, in level space.
     fn bounds(&self) -> Bounds3;
@@ -72,11 +76,15 @@ pub trait ShapeOps: Debug + Send + Sync {
     /// Everything about the surface at a hit, in level space.
     fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint;
 
-    /// Surface area; infinite for unbounded shapes.
-    fn area(&self) -> f32;
+    /// Surface area; infinite where it is not known. Only shapes of known area can shine.
+    fn area(&self) -> f32 {
+        f32::INFINITY
+    }
 
     /// A point drawn uniformly by area. `None` where that is not possible.
-    fn sample_area(&self, u: Point2) -> Option<ShapeSample>;
+    fn sample_area(&self, _: Point2) -> Option<ShapeSample> {
+        None
+    }
 
     /// A point drawn for light towards `reference`; its `pdf` is per steradian there.
     fn sample_towards(&self, reference: Point3, u: Point2) -> Option<ShapeSample> {

@@ -8,7 +8,7 @@
 use aureole_desc::{ParamDoc, Params, SceneError, Span};
 use aureole_math::{Bounds3, Frame, Normal3, Point2, Point3, Ray, Transform, Vector3, gamma};
 
-use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
+use super::{Geometry, Placement, ShapeHit, ShapeOps, SurfacePoint};
 use crate::{Element, Resolver};
 
 /// An infinite plane. It cannot shine: its area is infinite.
@@ -72,13 +72,5 @@ impl ShapeOps for Plane {
         let p = self.origin + self.frame.s * u + self.frame.t * v;
         let terms = self.origin.to_vector().abs() + (self.frame.s * u).abs() + (self.frame.t * v).abs();
         SurfacePoint::new(p, terms * gamma(6), self.frame.n, Point2::new(u, v), self.frame.s, self.frame.t)
-    }
-
-    fn area(&self) -> f32 {
-        f32::INFINITY
-    }
-
-    fn sample_area(&self, _: Point2) -> Option<ShapeSample> {
-        None
     }
 }

@@ -12,7 +12,7 @@ use aureole_desc::{ParamDoc, Params, SceneError, Span};
 use aureole_math::{Bounds3, Point2, Point3, Ray, Vector3};
 
 use super::quadric::{ObjectRay, ObjectSpace};
-use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
+use super::{Geometry, Placement, ShapeHit, ShapeOps, SurfacePoint};
 use crate::{Element, Resolver};
 
 /// How normals are found.
@@ -244,14 +244,6 @@ impl ShapeOps for SdfGrid {
         let error = error + Vector3::splat(hit.t * ray.direction.length() * 4.0 * f32::EPSILON);
         let surface = SurfacePoint::new(world, error, ng, Point2::new(0.0, 0.0), frame.s, frame.t);
         SurfacePoint { primitive: hit.primitive, ..surface.with_shading_normal(ns) }
-    }
-
-    fn area(&self) -> f32 {
-        f32::INFINITY
-    }
-
-    fn sample_area(&self, _: Point2) -> Option<ShapeSample> {
-        None
     }
 
     fn primitive_count(&self) -> usize {

@@ -14,7 +14,7 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Bounds3, Frame, Point2, Point3, Ray, Transform, Vector3, warp};
 
 use super::quadric::ObjectSpace;
-use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
+use super::{Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
 use crate::{Element, Resolver};
 
 /// The unit sphere in an object space.
@@ -140,10 +140,6 @@ impl Element for Sphere {
 }
 
 impl ShapeOps for Sphere {
-    fn geometry(&self) -> Geometry {
-        Geometry::Boxes(vec![self.bounds()])
-    }
-
     fn bounds(&self) -> Bounds3 {
         // The box of an ellipsoid: each axis reaches as far as the length of its row [exact for linear maps].
         let rows = self.space.world_from_object.rows();
