@@ -47,7 +47,7 @@ fn materials() {
         ),
         (
             r#"<bsdf type="bumpmap"><texture name="any" type="checkerboard"/><float name="scale" value="2"/><bsdf type="diffuse"/></bsdf>"#,
-            "bump(texture=checkerboard() bsdf=diffuse() scale=2)",
+            "bump(texture=checkerboard(swap_numbers=true) bsdf=diffuse() scale=2)",
         ),
         (
             r#"<bsdf type="normalmap"><texture name="normalmap" type="mesh_attribute"><string name="name" value="vertex_n"/></texture><bsdf type="diffuse"/></bsdf>"#,
@@ -133,7 +133,7 @@ fn lights() {
             "spot(cutoff_angle=30)",
             "directional(direction=[0.0, -1.0, 0.0] irradiance=2)",
             "constant(radiance=Rgb([3.0, 3.0, 3.0]))",
-            "projector(fov_axis=x fov=20)",
+            "projector(fov_axis=x flip_v=true scale=3.141592653589793 fov=20)",
         ]
     );
     // A spectrum of constant power is not white: it stays a spectrum in lights.
