@@ -59,8 +59,10 @@ impl UserShapes for Balls {
 }
 
 fn agree<U: UserShapes>(geometries: &[Geometry], user: &U, n: usize) {
-    let build =
-        |structure| World::build(geometries.to_vec(), 0, &Config { structure, ..Config::default() }).unwrap();
+    let build = |structure| {
+        World::build(geometries.to_vec(), 0, &Config { structure, ..Config::default() })
+            .expect("the geometry is sound")
+    };
     let (list, tree) = (build(Structure::List), build(Structure::Hierarchy));
     let mut hits = 0;
     for ray in rays(n, 77) {

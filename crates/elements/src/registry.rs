@@ -23,7 +23,6 @@ macro_rules! registry {
     ) => {
         $(#[$meta])*
         #[derive(Clone, Debug)]
-        #[allow(clippy::large_enum_variant)] // arenas hold few of them, and hot ones must not be behind a pointer
         pub enum $Family {
             $(#[doc = concat!("`", $name, "`: see [`", stringify!($Type), "`](", stringify!($module), "::", stringify!($Type), ").")]
               $Variant($module::$Type),)*

@@ -3,6 +3,8 @@
 //! Every comparison allows five standard errors or one part in ten thousand: fewer than one false alarm in a million runs,
 //! and the seeds are fixed.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use aureole_desc::{Family, Node, Params, Report, SceneDesc, Span, Value};
 use aureole_math::{Point3, Transform, Vector3};
 use aureole_render::{RenderOptions, Silent, render};

@@ -1,5 +1,7 @@
 //! `aureole render`: outputs, options, figures, repeatability.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use crate::fixture::Program;
 use aureole::image::{Image, ImageLimits, read_image};
 
