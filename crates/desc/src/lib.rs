@@ -1,6 +1,6 @@
 //! The scene description: a generic tree of nodes with spans, known to no element.
 //!
-//! Readers ([`aureole-formats`]) produce a [`SceneDesc`]; elements take their parameters from it through the narrow
+//! Readers (`aureole-formats`) produce a [`SceneDesc`]; elements take their parameters from it through the narrow
 //! door of [`Params`]. Nothing here knows what a sphere is.
 //!
 //! ```

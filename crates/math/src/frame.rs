@@ -86,7 +86,7 @@ pub struct Refraction {
 /// `eta` is the index on the side opposite to `n` over that on the side of `n`; `wo` may lie on either side.
 ///
 /// # References
-/// Snell's law as in [PBRT4] section 9.3.3.
+/// Snell's law as in [Pharr 2023] section 9.3.3.
 #[inline]
 pub fn refract(wo: Vector3, n: Vector3, eta: f32) -> Option<Refraction> {
     let cos = n.dot(wo);

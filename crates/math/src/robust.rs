@@ -22,7 +22,7 @@ pub fn next_down(x: f32) -> f32 {
     x.next_down()
 }
 
-/// `a·b - c·d` without catastrophic cancellation [Kahan].
+/// `a·b - c·d` without catastrophic cancellation [Kahan 2004].
 #[inline]
 pub fn difference_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
     // Exact products in double precision: cheaper than fused operations where the hardware lacks them.
@@ -34,7 +34,7 @@ pub fn difference_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
 /// `error` bounds the absolute error of each coordinate of `p`; `n` is the geometric normal.
 ///
 /// # References
-/// [PBRT4] section 6.8.6.
+/// [Pharr 2023] section 6.8.6.
 #[inline]
 pub fn offset_ray_origin(p: Point3, error: Vector3, n: Vector3, w: Vector3) -> Point3 {
     let distance = n.abs().dot(error);

@@ -33,7 +33,7 @@ pub fn dielectric(cos_i: f32, eta: f32) -> DielectricFresnel {
 /// Fresnel reflectance of a conductor with complex index `eta + i k`, seen from vacuum.
 ///
 /// # References
-/// [Lazanyi and Szirmay-Kalos 2005]; the form with a² + b² after [Born and Wolf], as in [PBRT3] section 8.2.1.
+/// [Lazanyi and Szirmay-Kalos 2005]; the form with a² + b² after [Born and Wolf], as in [Pharr 2016] section 8.2.1.
 #[inline]
 pub fn conductor(cos_i: f32, eta: Spectrum, k: Spectrum) -> Spectrum {
     let cos2 = cos_i * cos_i;
