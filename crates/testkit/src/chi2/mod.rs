@@ -34,7 +34,7 @@ pub struct Chi2Config {
     pub seed: u64,
     /// The probability that a family of `test_count` correct samplers sees a false alarm.
     pub significance: f64,
-    /// How many tests share that probability (`sidak`).
+    /// How many tests share that probability ([`sidak`](crate::sidak)).
     pub test_count: usize,
 }
 
