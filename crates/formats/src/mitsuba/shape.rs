@@ -6,7 +6,7 @@ use aureole_desc::{Family, Mesh, Node, NodeId, Params, SceneError, Span, Value};
 use aureole_spectrum::SpectrumSource;
 
 use super::scope::Scope;
-use super::translate::{MeshKey, Translator};
+use super::translate::{MeshKey, Orientation, Translator};
 use super::tree::{ObjectId, Tag};
 use crate::mesh::{add_smooth_normals, obj, ply, serialized, vol};
 
@@ -85,6 +85,7 @@ pub(super) fn translate<'a>(
             t.put(&mut scope, "group", group)?;
         }
         "mesh" => mesh(t, &mut scope)?,
+        "sphere" => turn_if_mirrored(&mut scope)?,
         "sdf_grid" => sdf_grid(t, &mut scope)?,
         "bspline_curve" | "linear_curve" | "ellipsoids" if scope.has("filename") => t.put_path(&mut scope)?,
         _ => {}
@@ -130,6 +131,15 @@ fn group<'a>(t: &mut Translator<'a, '_, '_>, mut scope: Scope<'a>) -> Result<Nod
     t.finish(scope, Family::Shape, "group")
 }
 
+/// Mitsuba's spheres, and its meshes whose normals follow from their faces, turn inside out when they are mirrored.
+fn turn_if_mirrored(scope: &mut Scope<'_>) -> Result<(), SceneError> {
+    if scope.values.transform("world_from_object")?.swaps_handedness() {
+        let flip_normals = scope.bool("flip_normals", false)?;
+        scope.out.push("flip_normals", Value::Bool(!flip_normals), scope.span());
+    }
+    Ok(())
+}
+
 /// Reads a mesh file, once for all shapes that want it in the same way.
 fn mesh(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(), SceneError> {
     let (path, at) = t.path(scope, "filename")?;
@@ -145,14 +155,18 @@ fn mesh(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(), Sce
     scope.ignore(&["max_smooth_angle", "srgb", "collapse", "fold"]);
 
     let key: MeshKey = (path, index, flip_v, face_normals);
-    let mesh = match t.meshes.get(&key) {
-        Some(mesh) => mesh.clone(),
+    let (mesh, orientation) = match t.meshes.get(&key) {
+        Some(known) => known.clone(),
         None => {
-            let mesh = Arc::new(read_mesh(t, plugin, &key, at)?);
-            t.meshes.insert(key, mesh.clone());
-            mesh
+            let (mesh, orientation) = read_mesh(t, plugin, &key, at)?;
+            let read = (Arc::new(mesh), orientation);
+            t.meshes.insert(key, read.clone());
+            read
         }
     };
+    if orientation == Orientation::ByFaces {
+        turn_if_mirrored(scope)?;
+    }
     scope.out.push("mesh", Value::Mesh(mesh), at);
     if face_normals {
         scope.out.push("face_normals", Value::Bool(true), scope.span());
@@ -165,7 +179,7 @@ fn read_mesh(
     plugin: &str,
     (path, index, flip_v, face_normals): &MeshKey,
     at: Span,
-) -> Result<Mesh, SceneError> {
+) -> Result<(Mesh, Orientation), SceneError> {
     let limits = &t.context.options.limits;
     let mut face_normals = *face_normals;
     let mut mesh = match plugin {
@@ -180,13 +194,15 @@ fn read_mesh(
     if *flip_v {
         mesh.uvs.iter_mut().for_each(|[_, v]| *v = 1.0 - *v);
     }
+    if !face_normals && !mesh.normals.is_empty() {
+        return Ok((mesh, Orientation::ByNormals));
+    }
     // Meshes are smooth in Mitsuba unless they are told to be flat.
-    if face_normals {
-        mesh.normals.clear();
-    } else if mesh.normals.is_empty() {
+    mesh.normals.clear();
+    if !face_normals {
         add_smooth_normals(&mut mesh);
     }
-    Ok(mesh)
+    Ok((mesh, Orientation::ByFaces))
 }
 
 /// A grid of signed distances, with its values.

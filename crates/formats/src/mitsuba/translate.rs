@@ -41,6 +41,15 @@ enum State {
 /// What a mesh depends on: file, index in the file, whether v is flipped, whether normals are dropped.
 pub(super) type MeshKey = (PathBuf, usize, bool, bool);
 
+/// What tells the outside of a mesh from its inside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Orientation {
+    /// The normals in its file.
+    ByNormals,
+    /// How its faces are wound.
+    ByFaces,
+}
+
 /// The state of a translation.
 pub(super) struct Translator<'a, 'c, 'r> {
     pub(super) tree: &'a Tree,
@@ -50,7 +59,7 @@ pub(super) struct Translator<'a, 'c, 'r> {
     state: Vec<State>,
     depth: usize,
     /// Meshes that were read.
-    pub(super) meshes: FxHashMap<MeshKey, Arc<Mesh>>,
+    pub(super) meshes: FxHashMap<MeshKey, (Arc<Mesh>, Orientation)>,
 }
 
 impl<'a> Translator<'a, '_, '_> {

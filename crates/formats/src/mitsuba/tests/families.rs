@@ -89,6 +89,8 @@ fn shapes() {
     ] {
         assert_eq!(show_shape(xml), text);
     }
+    let mirrored = r#"<shape type="sphere"><transform name="to_world"><scale x="-1"/></transform></shape>"#;
+    assert!(show_shape(mirrored).starts_with("sphere(flip_normals=true"));
     let (scene, _) = read(
         r#"<shape type="merge"><shape type="cube"/><shape type="merge"><shape type="disk"/></shape></shape>"#,
     );
