@@ -42,7 +42,8 @@ pub struct Context<'a> {
 }
 
 /// All formats.
-pub const FORMATS: &[Format] = &[crate::mitsuba::FORMAT, crate::object::PLY, crate::object::OBJ];
+pub const FORMATS: &[Format] =
+    &[crate::pbrt::FORMAT, crate::mitsuba::FORMAT, crate::object::PLY, crate::object::OBJ];
 
 /// All suffixes, for messages.
 pub fn known_suffixes() -> Vec<String> {

@@ -21,6 +21,7 @@ mod gallery;
 pub mod mesh;
 mod mitsuba;
 mod object;
+mod pbrt;
 
 use std::path::Path;
 

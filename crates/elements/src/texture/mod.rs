@@ -6,6 +6,7 @@ mod checkerboard;
 mod constant;
 mod mesh_attribute;
 mod mix;
+mod power;
 mod scale;
 mod uv_map;
 
@@ -21,6 +22,7 @@ pub use checkerboard::Checkerboard;
 pub use constant::Constant;
 pub use mesh_attribute::MeshAttribute;
 pub use mix::Mix;
+pub use power::Power;
 pub use scale::Scale;
 pub use uv_map::UvMap;
 
@@ -123,6 +125,7 @@ registry! {
     checkerboard::Checkerboard as Checkerboard = "checkerboard",
     scale::Scale as Scale = "scale",
     mix::Mix as Mix = "mix",
+    power::Power as Power = "power",
     bilerp::Bilerp as Bilerp = "bilerp",
     mesh_attribute::MeshAttribute as MeshAttribute = "mesh_attribute",
 }

@@ -23,6 +23,10 @@ fn examples(world: &mut World) -> Vec<(&'static str, Id<Texture>)> {
         ("checkerboard", world.add(texture, "checkerboard", [("color0", ramp.clone()), twice()])),
         ("scale", world.add(texture, "scale", [("texture", wood.clone()), ("scale", ramp.clone())])),
         ("mix", world.add(texture, "mix", [("a", wood), ("b", ramp.clone()), ("amount", ramp)])),
+        (
+            "power",
+            world.add(texture, "power", [("texture", rgb(0.25, 0.5, 0.1)), ("exponent", Value::Float(0.5))]),
+        ),
         ("mesh attribute", world.add(texture, "mesh_attribute", [])),
     ];
     list.into_iter().map(|(label, node)| (label, world.texture_of(&node))).collect()

@@ -1,0 +1,141 @@
+//! Lights.
+
+use std::f64::consts::PI;
+
+use aureole_desc::{Family, NodeId, Params, SceneError, Value};
+
+use super::params::ParamSet;
+use super::shapes::towards;
+use super::state::Reader;
+
+impl Reader<'_, '_> {
+    pub(super) fn light(&mut self, kind: &str, given: &ParamSet) -> Result<(), SceneError> {
+        let at = given.span;
+        let ctm = self.ctm(at)?;
+        let mut params = Params::new();
+        let name = match kind {
+            "point" => self.point(given, &mut params)?,
+            "spot" => self.spot(given, &mut params)?,
+            "distant" => self.distant(given, &mut params)?,
+            "infinite" => self.infinite(given, &mut params)?,
+            "goniometric" => {
+                self.warn("light `goniometric` is not rendered yet: `point` stands in for it", at);
+                given.touch_all();
+                self.point(given, &mut params)?
+            }
+            "projection" => {
+                self.warn("light `projection` is not rendered yet and left out", at);
+                return Ok(());
+            }
+            _ => {
+                let known = ["distant", "goniometric", "infinite", "point", "projection", "spot"];
+                let known = known.map(str::to_owned).to_vec();
+                return Err(SceneError::UnknownKind {
+                    family: Family::Light,
+                    kind: kind.to_owned(),
+                    known,
+                    at,
+                });
+            }
+        };
+        // A light that points somewhere has put that into a transform of its own.
+        let own = params.transform("world_from_light")?;
+        params.push("world_from_light", Value::Transform(ctm * own), at);
+        given.finish(&format!("light `{kind}`"), self.context.report);
+        let id = self.add(Family::Light, name, params, at);
+        self.desc.lights.push(id);
+        Ok(())
+    }
+
+    /// `scale`, and what `power` makes of it when the light's power per unit of intensity is known.
+    fn strength(&mut self, given: &ParamSet, power_per_unit: f64) -> Result<f64, SceneError> {
+        let scale = given.float("scale", 1.0)?;
+        Ok(match given.try_float("power")?.filter(|power| *power > 0.0) {
+            Some(power) => scale * power / power_per_unit,
+            None => scale,
+        })
+    }
+
+    fn point(&mut self, given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+        let strength = self.strength(given, 4.0 * PI)?;
+        params.push("intensity", Value::Spectrum(given.light("I", strength, self)?), given.at("I"));
+        params.push("position", Value::Vec3(given.point3("from", [0.0; 3])?), given.at("from"));
+        Ok("point")
+    }
+
+    fn spot(&mut self, given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+        let at = given.span;
+        let (from, to) = (given.point3("from", [0.0; 3])?, given.point3("to", [0.0, 0.0, 1.0])?);
+        let place =
+            towards(from, to).ok_or_else(|| SceneError::invalid("`from` and `to` must differ", at))?;
+        let cone = given.float("coneangle", 30.0)?;
+        let beam = cone - given.float("conedeltaangle", 5.0)?;
+        // The cone's solid angle, its soft edge counted by half.
+        let solid_angle = 2.0
+            * PI
+            * ((1.0 - beam.to_radians().cos()) + (beam.to_radians().cos() - cone.to_radians().cos()) / 2.0);
+        let strength = self.strength(given, solid_angle)?;
+        params.push("intensity", Value::Spectrum(given.light("I", strength, self)?), at);
+        params.push("cutoff_angle", Value::Float(cone), at);
+        params.push("beam_width", Value::Float(beam.max(0.0)), at);
+        params.push("falloff", Value::String("smoothstep".into()), at);
+        params.push("world_from_light", Value::Transform(place), at);
+        Ok("spot")
+    }
+
+    fn distant(&mut self, given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+        let at = given.span;
+        let (from, to) = (given.point3("from", [0.0; 3])?, given.point3("to", [0.0, 0.0, 1.0])?);
+        let travels: [f64; 3] = std::array::from_fn(|i| to[i] - from[i]);
+        let scale =
+            given.float("scale", 1.0)? * given.try_float("illuminance")?.filter(|e| *e > 0.0).unwrap_or(1.0);
+        params.push("direction", Value::Vec3(travels), at);
+        params.push("irradiance", Value::Spectrum(given.light("L", scale, self)?), at);
+        Ok("directional")
+    }
+
+    fn infinite(&mut self, given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+        let at = given.span;
+        let mut scale = given.float("scale", 1.0)?;
+        let illuminance = given.try_float("illuminance")?.filter(|e| *e > 0.0);
+        if given.has("portal") {
+            self.warn("portals are not used yet: the light is sampled as a whole", given.at("portal"));
+        }
+        let Some(path) = given.path("filename", self)? else {
+            // Even surroundings of radiance one give a surface π.
+            scale *= illuminance.map_or(1.0, |e| e / PI);
+            params.push("radiance", Value::Spectrum(given.light("L", scale, self)?), at);
+            return Ok("constant");
+        };
+        if illuminance.is_some() {
+            self.warn("`illuminance` of a picture is not applied yet", given.at("illuminance"));
+        }
+        params.push("filename", Value::Path(path), given.at("filename"));
+        params.push("scale", Value::Float(scale), at);
+        params.push("mapping", Value::String("equal_area".into()), at);
+        Ok("envmap")
+    }
+
+    /// The emission of shapes below an `AreaLightSource`.
+    pub(super) fn area_light(&mut self, given: &ParamSet) -> Result<NodeId, SceneError> {
+        let at = given.span;
+        let scale = given.float("scale", 1.0)?;
+        if given.has("power") {
+            self.warn("`power` of an area light is not applied yet: `L` and `scale` are", given.at("power"));
+        }
+        let mut params = Params::new();
+        let radiance = match given.path("filename", self)? {
+            Some(path) => {
+                let mut picture = Params::new();
+                picture.push("filename", Value::Path(path), given.at("filename"));
+                picture.push("scale", Value::Float(scale), at);
+                Value::Node(self.add(Family::Texture, "bitmap", picture, at))
+            }
+            None => Value::Spectrum(given.light("L", scale, self)?),
+        };
+        params.push("radiance", radiance, at);
+        params.push("two_sided", Value::Bool(given.bool("twosided", false)?), at);
+        given.finish("AreaLightSource", self.context.report);
+        Ok(self.add(Family::Light, "area", params, at))
+    }
+}

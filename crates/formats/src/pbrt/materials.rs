@@ -1,0 +1,302 @@
+//! Materials. In pbrt they look the same from both sides.
+
+use std::sync::Arc;
+
+use aureole_desc::{Family, NodeId, Params, SceneError, Value};
+use aureole_spectrum::{SpectrumRole, SpectrumSource, named_spectrum};
+
+use super::params::ParamSet;
+use super::state::{Reader, unknown};
+
+const KINDS: &[&str] = &[
+    "coatedconductor",
+    "coateddiffuse",
+    "conductor",
+    "dielectric",
+    "diffuse",
+    "diffusetransmission",
+    "hair",
+    "interface",
+    "measured",
+    "mix",
+    "none",
+    "subsurface",
+    "thindielectric",
+];
+
+impl Reader<'_, '_> {
+    pub(super) fn named_material(&mut self, name: &str, at: aureole_desc::Span) -> Result<(), SceneError> {
+        let found = self.material_by_name(name, at)?;
+        self.state.material = Some(found);
+        Ok(())
+    }
+
+    fn material_by_name(&self, name: &str, at: aureole_desc::Span) -> Result<NodeId, SceneError> {
+        self.materials
+            .get(name)
+            .copied()
+            .ok_or_else(|| unknown("named material", name, self.materials.keys(), at))
+    }
+
+    pub(super) fn make_named_material(&mut self, name: &str, given: &ParamSet) -> Result<(), SceneError> {
+        let kind = given.text("type")?.ok_or_else(|| SceneError::MissingParam {
+            element: "MakeNamedMaterial".into(),
+            param: "type".into(),
+            wanted: "the material's kind as a string".into(),
+            at: given.span,
+        })?;
+        let id = self.material(kind, given)?;
+        self.desc[id].name = Some(name.to_owned());
+        self.materials.insert(name.to_owned(), id);
+        Ok(())
+    }
+
+    /// Builds a material with its bumps, for both sides.
+    pub(super) fn material(&mut self, kind: &str, given: &ParamSet) -> Result<NodeId, SceneError> {
+        let at = given.span;
+        let (name, params) = match kind {
+            "diffuse" => ("diffuse", self.copied(given, &[("reflectance", "reflectance")])?),
+            "conductor" => self.conductor(given)?,
+            "dielectric" => self.dielectric(given)?,
+            "thindielectric" => ("thin_dielectric", self.index(given)?),
+            "diffusetransmission" => self.diffuse_transmission(given)?,
+            "coateddiffuse" => self.coated_diffuse(given)?,
+            "mix" => self.mix(given)?,
+            "interface" | "none" | "" => ("null", Params::new()),
+            "coatedconductor" | "hair" | "subsurface" | "measured" => self.placeholder(kind, given)?,
+            _ => {
+                let known = KINDS.iter().map(|k| (*k).to_owned()).collect();
+                return Err(SceneError::UnknownKind {
+                    family: Family::Bsdf,
+                    kind: kind.to_owned(),
+                    known,
+                    at,
+                });
+            }
+        };
+        let mut id = self.add(Family::Bsdf, name, params, at);
+        id = self.bumps(id, given)?;
+        given.finish(&format!("material `{kind}`"), self.context.report);
+        if matches!(name, "diffuse" | "conductor" | "rough_conductor" | "plastic" | "rough_plastic") {
+            id = self.add(Family::Bsdf, "two_sided", Params::new().with("bsdf", Value::Node(id)), at);
+        }
+        Ok(id)
+    }
+
+    /// Parameters that are textures or constants under another name.
+    fn copied(&self, given: &ParamSet, names: &[(&str, &str)]) -> Result<Params, SceneError> {
+        let mut params = Params::new();
+        for (theirs, ours) in names {
+            if let Some(value) = given.textured(theirs, self)? {
+                params.push(*ours, value, given.at(theirs));
+            }
+        }
+        Ok(params)
+    }
+
+    /// `normalmap` and `displacement`, which any material may have.
+    fn bumps(&mut self, mut id: NodeId, given: &ParamSet) -> Result<NodeId, SceneError> {
+        if let Some(path) = given.path("normalmap", self)? {
+            let at = given.at("normalmap");
+            let mut picture = Params::new();
+            picture.push("filename", Value::Path(path), at);
+            picture.push("encoding", Value::String("linear".into()), at);
+            let texture = self.add(Family::Texture, "bitmap", picture, at);
+            id = self.bent("normal_map", texture, id, at);
+        }
+        if let Some(Value::Node(texture)) = given.textured("displacement", self)? {
+            id = self.bent("bump", texture, id, given.at("displacement"));
+        }
+        Ok(id)
+    }
+
+    fn bent(&mut self, kind: &str, texture: NodeId, material: NodeId, at: aureole_desc::Span) -> NodeId {
+        let mut params = Params::new();
+        params.push("texture", Value::Node(texture), at);
+        params.push("bsdf", Value::Node(material), at);
+        // pbrt has neither of Mitsuba's corrections.
+        params.push("flip_invalid_normals", Value::Bool(false), at);
+        params.push("soften_terminator", Value::Bool(false), at);
+        self.add(Family::Bsdf, kind, params, at)
+    }
+
+    /// Roughness as the microfacets' alpha; `None` for a smooth surface.
+    fn roughness(&mut self, given: &ParamSet, default: f64) -> Result<Option<[Value; 2]>, SceneError> {
+        let remap = given.bool("remaproughness", true)?;
+        let both = given.textured("roughness", self)?;
+        let mut alphas = Vec::new();
+        for name in ["uroughness", "vroughness"] {
+            let value = given.textured(name, self)?.or_else(|| both.clone());
+            let value = value.unwrap_or(Value::Spectrum(SpectrumSource::Uniform(default as f32)));
+            alphas.push(match value {
+                Value::Spectrum(constant) => {
+                    let r = constant.to_rgb(SpectrumRole::Unbounded)[0];
+                    Value::Float(f64::from(if remap { r.max(0.0).sqrt() } else { r }))
+                }
+                Value::Node(texture) if remap => {
+                    let params = Params::new()
+                        .with("texture", Value::Node(texture))
+                        .with("exponent", Value::Float(0.5));
+                    Value::Node(self.add(Family::Texture, "power", params, given.span))
+                }
+                other => other,
+            });
+        }
+        let is_smooth = |value: &Value| matches!(value, Value::Float(alpha) if *alpha < 1e-3);
+        match <[Value; 2]>::try_from(alphas) {
+            Ok(alphas) if !alphas.iter().all(is_smooth) => Ok(Some(alphas)),
+            _ => Ok(None),
+        }
+    }
+
+    fn rough(params: &mut Params, [u, v]: [Value; 2], at: aureole_desc::Span) {
+        params.push("distribution", Value::String("ggx".into()), at);
+        params.push("alpha_u", u, at);
+        params.push("alpha_v", v, at);
+    }
+
+    fn conductor(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let at = given.span;
+        let mut params = self.copied(given, &[("eta", "eta"), ("k", "k")])?;
+        if let Some(reflectance) = given.textured("reflectance", self)? {
+            params = Params::new();
+            match reflectance {
+                // The index that reflects so much at normal incidence: eta = 1, k = 2 √r / √(1 - r).
+                Value::Spectrum(constant) => {
+                    let k = constant.to_rgb(SpectrumRole::Albedo).map(|r| {
+                        let r = r.clamp(0.0, 0.9999);
+                        2.0 * r.sqrt() / (1.0 - r).sqrt()
+                    });
+                    params.push("eta", Value::Float(1.0), at);
+                    params.push("k", Value::Spectrum(SpectrumSource::Rgb(k)), at);
+                }
+                texture => {
+                    params.push("material", Value::String("none".into()), at);
+                    params.push("specular_reflectance", texture, at);
+                }
+            }
+        } else {
+            for (name, default) in [("eta", "metal-Cu-eta"), ("k", "metal-Cu-k")] {
+                if let (false, Some(table)) = (params.has(name), named_spectrum(default)) {
+                    params.push(name, Value::Spectrum(SpectrumSource::Tabulated(table)), at);
+                }
+            }
+        }
+        match self.roughness(given, 0.0)? {
+            Some(alphas) => {
+                Self::rough(&mut params, alphas, at);
+                Ok(("rough_conductor", params))
+            }
+            None => Ok(("conductor", params)),
+        }
+    }
+
+    /// `eta` of a dielectric: a number, or a glass's index near the sodium line.
+    fn index(&mut self, given: &ParamSet) -> Result<Params, SceneError> {
+        let eta = match given.spectrum("eta", self)? {
+            Some(SpectrumSource::Tabulated(table)) => {
+                self.warn(
+                    "dispersion needs spectral rendering: the index at 589 nm is used",
+                    given.at("eta"),
+                );
+                f64::from(table.eval(589.0))
+            }
+            Some(constant) => f64::from(constant.to_rgb(SpectrumRole::Unbounded)[0]),
+            None => 1.5,
+        };
+        let mut params = Params::new();
+        params.push("int_ior", Value::Float(eta), given.span);
+        params.push("ext_ior", Value::Float(1.0), given.span);
+        Ok(params)
+    }
+
+    fn dielectric(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let mut params = self.index(given)?;
+        match self.roughness(given, 0.0)? {
+            Some(alphas) => {
+                Self::rough(&mut params, alphas, given.span);
+                Ok(("rough_dielectric", params))
+            }
+            None => Ok(("dielectric", params)),
+        }
+    }
+
+    fn diffuse_transmission(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let mut params =
+            self.copied(given, &[("reflectance", "reflectance"), ("transmittance", "transmittance")])?;
+        let scale = given.float("scale", 1.0)?;
+        if scale != 1.0 {
+            for name in ["reflectance", "transmittance"] {
+                let value = params.get(name).cloned().unwrap_or(Value::Float(0.25));
+                let scaled = Params::new().with("texture", value).with("scale", Value::Float(scale));
+                let id = self.add(Family::Texture, "scale", scaled, given.span);
+                params.push(name, Value::Node(id), given.span);
+            }
+        }
+        Ok(("diffuse_transmission", params))
+    }
+
+    fn coated_diffuse(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let at = given.span;
+        self.warn(
+            "`coateddiffuse` is rendered as a plastic: the walk between its layers is not simulated yet",
+            at,
+        );
+        let mut params = self.index(given)?;
+        for (name, value) in
+            self.copied(given, &[("reflectance", "diffuse_reflectance")])?.iter().map(|p| (&p.name, &p.value))
+        {
+            params.push(name.clone(), value.clone(), at);
+        }
+        params.push("nonlinear", Value::Bool(true), at);
+        for ignored in ["thickness", "maxdepth", "nsamples", "g", "albedo"] {
+            given.get(ignored);
+        }
+        match self.roughness(given, 0.0)? {
+            Some([Value::Float(u), Value::Float(v)]) => {
+                params.push("distribution", Value::String("ggx".into()), at);
+                params.push("alpha", Value::Float((u * v).sqrt()), at);
+                Ok(("rough_plastic", params))
+            }
+            Some(_) => {
+                self.warn("a textured roughness of `coateddiffuse` is not rendered yet: 0.1 is used", at);
+                params.push("distribution", Value::String("ggx".into()), at);
+                params.push("alpha", Value::Float(0.1), at);
+                Ok(("rough_plastic", params))
+            }
+            None => Ok(("plastic", params)),
+        }
+    }
+
+    fn mix(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let at = given.at("materials");
+        let names: Vec<String> = match given.get("materials").map(|p| &p.values) {
+            Some(super::params::Values::Texts(names)) if names.len() == 2 => names.clone(),
+            _ => return Err(SceneError::invalid("`mix` needs `materials`: the names of two materials", at)),
+        };
+        let mut params = Params::new();
+        params.push("a", Value::Node(self.material_by_name(&names[0], at)?), at);
+        params.push("b", Value::Node(self.material_by_name(&names[1], at)?), at);
+        params.push("weight", given.textured("amount", self)?.unwrap_or(Value::Float(0.5)), at);
+        Ok(("blend", params))
+    }
+
+    /// Something near to a material that is not there yet.
+    fn placeholder(&mut self, kind: &str, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let at = given.span;
+        let stand_in = if kind == "coatedconductor" { "a bare conductor" } else { "a matte surface" };
+        self.warn(format!("material `{kind}` is not rendered yet: {stand_in} stands in for it"), at);
+        if kind != "coatedconductor" {
+            given.touch_all();
+            return Ok(("diffuse", self.copied(given, &[("reflectance", "reflectance")])?));
+        }
+        let mut params = self.copied(given, &[("conductor.eta", "eta"), ("conductor.k", "k")])?;
+        for (name, default) in [("eta", "metal-Cu-eta"), ("k", "metal-Cu-k")] {
+            if let (false, Some(table)) = (params.has(name), named_spectrum(default)) {
+                params.push(name, Value::Spectrum(SpectrumSource::Tabulated(Arc::clone(&table))), at);
+            }
+        }
+        given.touch_all();
+        Ok(("conductor", params))
+    }
+}

@@ -1,0 +1,50 @@
+//! The reader of pbrt-v4 scenes.
+//!
+//! pbrt's camera space is left-handed; the world's numbers are taken as they are and the camera is mirrored, so that
+//! images come out the same. What Aureole cannot do yet is a warning that names it.
+//!
+//! Reference: the pbrt-v4 input file format, <https://pbrt.org/fileformat-v4>.
+
+mod directives;
+mod lexer;
+mod lights;
+mod materials;
+mod options;
+mod params;
+mod shapes;
+mod state;
+mod textures;
+
+#[cfg(test)]
+mod tests;
+
+use aureole_desc::{SceneDesc, SceneError, Span};
+
+use crate::format::Format;
+use crate::{Context, Input, file};
+use state::Reader;
+
+/// The format's entry in the list.
+pub(crate) const FORMAT: Format = Format {
+    name: "pbrt",
+    summary: "pbrt-v4 scenes",
+    suffixes: &["pbrt"],
+    sniff: |start| {
+        let text = String::from_utf8_lossy(start);
+        ["WorldBegin", "LookAt", "Integrator", "Camera"].iter().any(|word| text.contains(word))
+            && !text.contains('<')
+    },
+    read,
+};
+
+fn read(input: Input<'_>, context: &mut Context<'_>) -> Result<SceneDesc, SceneError> {
+    let (source, text) = match input.text {
+        Some(text) => (context.sources.add_text(input.path, text), text.into()),
+        None => file::read_text(input.path, &context.options.limits, context.sources, Span::NONE)?,
+    };
+    let folder = input.path.parent().map(Into::into).unwrap_or_default();
+    let mut reader = Reader::new(context, folder);
+    reader.open_files.push(input.path.to_owned());
+    reader.run(&text, source)?;
+    reader.finish(source)
+}

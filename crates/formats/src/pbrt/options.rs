@@ -1,0 +1,233 @@
+//! Camera, film, filter, sampler, integrator.
+
+use aureole_desc::{Family, Params, SceneError, Value};
+use aureole_math::{Transform, Vector3};
+
+use super::params::ParamSet;
+use super::state::{PendingCamera, Reader};
+
+impl Reader<'_, '_> {
+    pub(super) fn film_directive(&mut self, kind: &str, params: ParamSet) -> Result<(), SceneError> {
+        if !matches!(kind, "rgb" | "gbuffer" | "spectral") {
+            self.warn(format!("film `{kind}` is taken as `rgb`"), params.span);
+        }
+        self.film = Some(params);
+        Ok(())
+    }
+
+    /// Builds film and camera, which need to know of each other.
+    pub(super) fn finish_options(&mut self) -> Result<(), SceneError> {
+        let film = self.film.take().unwrap_or_else(|| ParamSet::empty(aureole_desc::Span::NONE));
+        let size = [film.int("xresolution", 1280)?, film.int("yresolution", 720)?];
+        if size.iter().any(|&n| n < 1) {
+            return Err(SceneError::invalid(
+                "the film needs at least one pixel in each direction",
+                film.span,
+            ));
+        }
+        let mut params = Params::new();
+        params.push("width", Value::Int(size[0]), film.at("xresolution"));
+        params.push("height", Value::Int(size[1]), film.at("yresolution"));
+        self.crop(&film, size, &mut params)?;
+        if let Some(name) = film.text("filename")? {
+            params.push("filename", Value::String(name.to_owned()), film.at("filename"));
+        }
+        let exposure = film.float("exposuretime", 1.0)? * film.float("iso", 100.0)? / 100.0;
+        if exposure != 1.0 {
+            let at = film.at("iso");
+            self.warn("the film's `iso` and `exposuretime` are not applied: use `--exposure`", at);
+        }
+        if let Some(sensor) = film.text("sensor")?.filter(|sensor| *sensor != "cie1931") {
+            self.warn(format!("sensor `{sensor}` is taken as `cie1931`"), film.at("sensor"));
+        }
+        for name in [
+            "diagonal",
+            "savefp16",
+            "maxcomponentvalue",
+            "coordinatesystem",
+            "whitebalance",
+            "nbuckets",
+            "lambdamin",
+            "lambdamax",
+        ] {
+            film.get(name); // nothing to do with the picture here
+        }
+        film.finish("Film", self.context.report);
+        self.desc.film = Some(self.add(Family::Film, "film", params, film.span));
+        match self.camera.take() {
+            Some(camera) => self.camera_node(&camera, size),
+            None => Ok(()),
+        }
+    }
+
+    fn crop(&mut self, film: &ParamSet, size: [i64; 2], params: &mut Params) -> Result<(), SceneError> {
+        let bounds = if let Some(list) = film.ints("pixelbounds")? {
+            <[i32; 4]>::try_from(list).ok().map(|b| b.map(i64::from))
+        } else if let Some(list) = film.floats("cropwindow")? {
+            let edge = |x: f32, n: i64| (f64::from(x.clamp(0.0, 1.0)) * n as f64).ceil() as i64;
+            <[f32; 4]>::try_from(list)
+                .ok()
+                .map(|c| [edge(c[0], size[0]), edge(c[1], size[0]), edge(c[2], size[1]), edge(c[3], size[1])])
+        } else {
+            return Ok(());
+        };
+        let Some([x0, x1, y0, y1]) = bounds.filter(|b| b[0] >= 0 && b[2] >= 0 && b[1] > b[0] && b[3] > b[2])
+        else {
+            return Err(SceneError::invalid(
+                "the crop must be four numbers x0 x1 y0 y1, with pixels in between",
+                film.span,
+            ));
+        };
+        for (name, value) in
+            [("crop_x", x0), ("crop_y", y0), ("crop_width", x1 - x0), ("crop_height", y1 - y0)]
+        {
+            params.push(name, Value::Int(value), film.span);
+        }
+        Ok(())
+    }
+
+    fn camera_node(&mut self, camera: &PendingCamera, size: [i64; 2]) -> Result<(), SceneError> {
+        let PendingCamera { kind, params: given, world_from_camera } = camera;
+        let at = given.span;
+        // pbrt's camera space is left-handed: its x axis points to the right of the image.
+        let mirrored = *world_from_camera * Transform::scale(Vector3::new(-1.0, 1.0, 1.0));
+        let mut params = Params::new();
+        let kind = match kind.as_str() {
+            "perspective" | "orthographic" | "spherical" => kind.as_str(),
+            other => {
+                self.warn(
+                    format!("camera `{other}` is not rendered yet: `perspective` stands in for it"),
+                    at,
+                );
+                "perspective"
+            }
+        };
+        if kind == "spherical" {
+            params.push("world_from_camera", Value::Transform(*world_from_camera), at);
+            let mapping = given.text("mapping")?.unwrap_or("equalarea");
+            let mapping = if mapping == "equirectangular" { "latlong" } else { "equal_area" };
+            params.push("mapping", Value::String(mapping.into()), at);
+        } else {
+            params.push("world_from_camera", Value::Transform(mirrored), at);
+            self.projective(kind, given, size, &mut params)?;
+        }
+        for name in ["shutteropen", "shutterclose"] {
+            given.get(name); // nothing moves yet
+        }
+        given.finish("Camera", self.context.report);
+        let id = self.add(Family::Camera, kind, params, at);
+        self.desc.cameras.push(id);
+        Ok(())
+    }
+
+    fn projective(
+        &mut self,
+        kind: &str,
+        given: &ParamSet,
+        size: [i64; 2],
+        params: &mut Params,
+    ) -> Result<(), SceneError> {
+        let at = given.span;
+        let aspect = given.float("frameaspectratio", size[0] as f64 / size[1] as f64)?;
+        let default = if aspect > 1.0 {
+            [-aspect, aspect, -1.0, 1.0]
+        } else {
+            [-1.0, 1.0, -1.0 / aspect, 1.0 / aspect]
+        };
+        let window = match given.floats("screenwindow")? {
+            Some(list) => <[f32; 4]>::try_from(list)
+                .map_err(|_| SceneError::invalid("`screenwindow` must be four numbers: x0 x1 y0 y1", at))?
+                .map(f64::from),
+            None => default,
+        };
+        // At distance one the window of a perspective camera is that of the screen times the tangent of half its angle.
+        let reach =
+            if kind == "perspective" { (given.float("fov", 90.0)?.to_radians() * 0.5).tan() } else { 1.0 };
+        let window: Vec<f32> = window.iter().map(|x| (x * reach) as f32).collect();
+        params.push("screen_window", Value::Floats(window.into()), at);
+        params.push("near_clip", Value::Float(0.0), at);
+        params.push("far_clip", Value::Float(1e30), at);
+        params.push("aperture_radius", Value::Float(given.float("lensradius", 0.0)?), at);
+        params.push("focus_distance", Value::Float(given.float("focaldistance", 1e6)?), at);
+        Ok(())
+    }
+
+    pub(super) fn filter(&mut self, kind: &str, given: &ParamSet) -> Result<(), SceneError> {
+        let at = given.span;
+        let (name, radius) = match kind {
+            "box" => ("box", 0.5),
+            "gaussian" => ("gaussian", 1.5),
+            "mitchell" => ("mitchell", 2.0),
+            "sinc" => ("lanczos", 4.0),
+            "triangle" => ("tent", 2.0),
+            other => {
+                self.warn(format!("filter `{other}` is not known: `gaussian` stands in for it"), at);
+                ("gaussian", 1.5)
+            }
+        };
+        let mut params = Params::new();
+        params.push(
+            "radius",
+            Value::Vec2([given.float("xradius", radius)?, given.float("yradius", radius)?]),
+            at,
+        );
+        let extra: &[(&str, &str, f64)] = match name {
+            "gaussian" => &[("sigma", "std_dev", 0.5)],
+            "mitchell" => &[("B", "b", 1.0 / 3.0), ("C", "c", 1.0 / 3.0)],
+            "lanczos" => &[("tau", "tau", 3.0)],
+            _ => &[],
+        };
+        for (theirs, ours, default) in extra {
+            params.push(*ours, Value::Float(given.float(theirs, *default)?), at);
+        }
+        given.finish("PixelFilter", self.context.report);
+        self.desc.filter = Some(self.add(Family::Filter, name, params, at));
+        Ok(())
+    }
+
+    pub(super) fn sampler(&mut self, kind: &str, given: &ParamSet) -> Result<(), SceneError> {
+        let name = match kind {
+            "independent" => "independent",
+            "stratified" => "stratified",
+            _ => "sobol",
+        };
+        let count = if name == "stratified" {
+            given.int("xsamples", 4)?.saturating_mul(given.int("ysamples", 4)?)
+        } else {
+            given.int("pixelsamples", 16)?
+        };
+        for ignored in ["seed", "randomization", "jitter"] {
+            given.get(ignored);
+        }
+        given.finish("Sampler", self.context.report);
+        let mut params = Params::new();
+        params.push("sample_count", Value::Int(count), given.span);
+        self.desc.sampler = Some(self.add(Family::Sampler, name, params, given.span));
+        Ok(())
+    }
+
+    pub(super) fn integrator(&mut self, kind: &str, given: &ParamSet) -> Result<(), SceneError> {
+        let at = given.span;
+        let name = if kind == "ambientocclusion" { "ao" } else { "path" };
+        if !matches!(
+            kind,
+            "path" | "volpath" | "simplepath" | "simplevolpath" | "randomwalk" | "ambientocclusion"
+        ) {
+            self.warn(format!("integrator `{kind}` is not there yet: `path` finds the same image"), at);
+        }
+        let mut params = Params::new();
+        if name == "ao" {
+            params.push("cos_sample", Value::Bool(given.bool("cossample", true)?), at);
+            params.push("distance", Value::Float(given.float("maxdistance", -1.0)?), at);
+        } else {
+            // pbrt counts bounces, Aureole segments.
+            params.push("max_depth", Value::Int(given.int("maxdepth", 5)?.clamp(0, 1 << 30) + 1), at);
+        }
+        for ignored in ["regularize", "lightsampler", "samplelights", "samplebsdf"] {
+            given.get(ignored);
+        }
+        given.finish("Integrator", self.context.report);
+        self.desc.integrator = Some(self.add(Family::Integrator, name, params, at));
+        Ok(())
+    }
+}

@@ -1,0 +1,195 @@
+//! Shapes.
+
+use std::sync::Arc;
+
+use aureole_desc::{Family, Mesh, Params, SceneError, Span, Value};
+use aureole_math::{Transform, Vector3};
+
+use super::params::ParamSet;
+use super::state::Reader;
+use crate::mesh::ply;
+
+const KINDS: &[&str] =
+    &["bilinearmesh", "curve", "cylinder", "disk", "loopsubdiv", "plymesh", "sphere", "trianglemesh"];
+
+impl Reader<'_, '_> {
+    pub(super) fn shape(&mut self, kind: &str, given: &ParamSet) -> Result<(), SceneError> {
+        let at = given.span;
+        let ctm = self.ctm(at)?;
+        let mut params = Params::new();
+        let (name, place) = match kind {
+            "trianglemesh" => (self.triangle_mesh(given, &mut params)?, ctm),
+            "plymesh" => (self.ply_mesh(given, &mut params)?, ctm),
+            "bilinearmesh" => (bilinear_mesh(given, &mut params)?, ctm),
+            "sphere" => (sphere(given, &mut params)?, ctm),
+            "disk" => (disk(given, &mut params)?, ctm),
+            "cylinder" => (cylinder(given, &mut params)?, ctm),
+            "curve" | "loopsubdiv" => {
+                self.warn(format!("shape `{kind}` is not rendered yet and left out"), at);
+                return Ok(());
+            }
+            _ => {
+                return Err(SceneError::UnknownKind {
+                    family: Family::Shape,
+                    kind: kind.to_owned(),
+                    known: KINDS.iter().map(|k| (*k).to_owned()).collect(),
+                    at,
+                });
+            }
+        };
+        let is_quadric = matches!(name, "sphere" | "disk" | "cylinder");
+        // For meshes pbrt's normals stay outside when a transform mirrors them, for quadrics they turn round.
+        let flip = self.state.reverse_orientation != (is_quadric && place.swaps_handedness());
+        params.push("world_from_object", Value::Transform(place), at);
+        params.push("flip_normals", Value::Bool(flip), at);
+        self.surface(given, &mut params)?;
+        given.finish(&format!("shape `{kind}`"), self.context.report);
+        let id = self.add(Family::Shape, name, params, at);
+        match &mut self.open_object {
+            Some(object) => object.shapes.push(id),
+            None => self.desc.shapes.push(id),
+        }
+        Ok(())
+    }
+
+    /// Material, emission and cut-out.
+    fn surface(&mut self, given: &ParamSet, params: &mut Params) -> Result<(), SceneError> {
+        let at = given.span;
+        if let Some(alpha) = given.textured("alpha", self)? {
+            params.push("alpha", alpha, given.at("alpha"));
+        }
+        if let Some(area_light) = self.state.area_light.clone() {
+            if self.open_object.is_some() {
+                self.warn("shapes inside objects cannot shine yet", at);
+            } else {
+                let emission = self.area_light(&area_light)?;
+                params.push("emission", Value::Node(emission), area_light.span);
+            }
+        }
+        let material = match self.state.material {
+            Some(material) => material,
+            None => {
+                let default = self.material("diffuse", &ParamSet::empty(at))?;
+                self.state.material = Some(default);
+                default
+            }
+        };
+        params.push("bsdf", Value::Node(material), at);
+        Ok(())
+    }
+
+    fn triangle_mesh(&mut self, given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+        let at = given.span;
+        let triples = |name: &str| -> Result<Vec<[f32; 3]>, SceneError> {
+            Ok(given.floats(name)?.unwrap_or_default().chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect())
+        };
+        let positions = triples("P")?;
+        if positions.is_empty() {
+            return Err(missing("trianglemesh", "P", "vertex positions", at));
+        }
+        let indices = match given.ints("indices")? {
+            Some(list) => triangles(&list, given.at("indices"))?,
+            None if positions.len() == 3 => vec![[0, 1, 2]],
+            None => {
+                return Err(missing("trianglemesh", "indices", "three vertex numbers for each triangle", at));
+            }
+        };
+        let uvs = match given.floats("uv")? {
+            Some(list) => Some(list),
+            None => given.floats("st")?,
+        };
+        let uvs = uvs.unwrap_or_default().chunks_exact(2).map(|c| [c[0], c[1]]).collect();
+        given.get("S"); // tangents come from uv
+        given.get("faceIndices");
+        let mesh = Mesh { positions, indices, normals: triples("N")?, uvs, ..Mesh::default() };
+        mesh.check().map_err(|message| SceneError::invalid(message, at))?;
+        params.push("mesh", Value::Mesh(Arc::new(mesh)), at);
+        Ok("mesh")
+    }
+
+    fn ply_mesh(&mut self, given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+        let path = given
+            .path("filename", self)?
+            .ok_or_else(|| missing("plymesh", "filename", "a PLY file", given.span))?;
+        given.get("edgelength");
+        if let Some(displacement) = given.get("displacement") {
+            let at = displacement.span;
+            self.warn("displacement is not rendered yet: the mesh stays smooth", at);
+        }
+        let at = given.at("filename");
+        let mesh = ply::read(&path, self.limits(), at)?;
+        params.push("mesh", Value::Mesh(Arc::new(mesh)), at);
+        Ok("mesh")
+    }
+}
+
+fn missing(element: &str, param: &str, wanted: &str, at: Span) -> SceneError {
+    SceneError::MissingParam { element: element.into(), param: param.into(), wanted: wanted.into(), at }
+}
+
+/// Vertex numbers by threes.
+fn triangles(list: &[i32], at: Span) -> Result<Vec<[u32; 3]>, SceneError> {
+    if !list.len().is_multiple_of(3) || list.iter().any(|&i| i < 0) {
+        return Err(SceneError::invalid("`indices` must be vertex numbers, three for each triangle", at));
+    }
+    Ok(list.chunks_exact(3).map(|c| [c[0], c[1], c[2]].map(|i| i as u32)).collect())
+}
+
+fn bilinear_mesh(given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+    let at = given.span;
+    let positions = given.floats("P")?.ok_or_else(|| missing("bilinearmesh", "P", "vertex positions", at))?;
+    params.push("positions", Value::Floats(positions.into()), at);
+    if let Some(indices) = given.ints("indices")? {
+        params.push("indices", Value::Ints(indices.into()), given.at("indices"));
+    }
+    for (theirs, ours) in [("N", "normals"), ("uv", "uvs")] {
+        if let Some(list) = given.floats(theirs)? {
+            params.push(ours, Value::Floats(list.into()), given.at(theirs));
+        }
+    }
+    given.get("faceIndices");
+    Ok("bilinear_mesh")
+}
+
+/// Copies a number where it is given.
+fn copy(given: &ParamSet, params: &mut Params, names: &[(&str, &str)]) -> Result<(), SceneError> {
+    for (theirs, ours) in names {
+        if let Some(x) = given.try_float(theirs)? {
+            params.push(*ours, Value::Float(x), given.at(theirs));
+        }
+    }
+    Ok(())
+}
+
+fn sphere(given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+    copy(
+        given,
+        params,
+        &[("radius", "radius"), ("zmin", "z_min"), ("zmax", "z_max"), ("phimax", "phi_max")],
+    )?;
+    params.push("flip_v", Value::Bool(true), given.span);
+    Ok("sphere")
+}
+
+fn disk(given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+    let names =
+        [("radius", "radius"), ("innerradius", "inner_radius"), ("height", "height"), ("phimax", "phi_max")];
+    copy(given, params, &names)?;
+    params.push("uv", Value::String("angle_radius".into()), given.span);
+    Ok("disk")
+}
+
+fn cylinder(given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+    copy(given, params, &[("radius", "radius"), ("phimax", "phi_max")])?;
+    params.push("p0", Value::Vec3([0.0, 0.0, given.float("zmin", -1.0)?]), given.span);
+    params.push("p1", Value::Vec3([0.0, 0.0, given.float("zmax", 1.0)?]), given.span);
+    Ok("cylinder")
+}
+
+/// The transform that puts +Z along a direction from a point.
+pub(super) fn towards(from: [f64; 3], to: [f64; 3]) -> Option<Transform> {
+    let point = |p: [f64; 3]| aureole_math::Point3::from(p.map(|x| x as f32));
+    let direction = point(to) - point(from);
+    let up = if direction.x.abs() < 1e-6 && direction.z.abs() < 1e-6 { Vector3::X } else { Vector3::Y };
+    Transform::look_at(point(from), point(to), up)
+}

@@ -1,0 +1,160 @@
+//! What a pbrt file builds up: the graphics state, named things, and the description.
+
+use std::path::PathBuf;
+
+use aureole_desc::{Family, Limits, Node, NodeId, Params, SceneDesc, SceneError, Span, Value};
+use aureole_math::Transform;
+use rustc_hash::FxHashMap;
+
+use super::params::{ParamSet, PbrtParam};
+use crate::Context;
+
+/// What directives change and `AttributeEnd` restores.
+#[derive(Clone)]
+pub(super) struct GraphicsState {
+    /// Transforms at the start and the end of the shutter.
+    pub ctm: [Transform; 2],
+    /// Which of the two transforms directives change.
+    pub active: [bool; 2],
+    pub reverse_orientation: bool,
+    pub material: Option<NodeId>,
+    pub area_light: Option<ParamSet>,
+    /// Defaults that `Attribute` sets, by what they are for.
+    pub defaults: FxHashMap<String, Vec<PbrtParam>>,
+}
+
+/// What `AttributeBegin`, `TransformBegin` and `ObjectBegin` leave to be ended.
+pub(super) enum Saved {
+    Attributes(Box<GraphicsState>),
+    Transforms([Transform; 2], [bool; 2]),
+    Object(Box<GraphicsState>),
+}
+
+/// An object being defined: its name, and its shapes so far.
+pub(super) struct OpenObject {
+    pub name: String,
+    pub shapes: Vec<NodeId>,
+    pub span: Span,
+}
+
+/// The reader's whole state.
+pub(super) struct Reader<'a, 'c> {
+    pub context: &'a mut Context<'c>,
+    /// Relative names count from the main file's folder.
+    pub folder: PathBuf,
+    pub desc: SceneDesc,
+    pub state: GraphicsState,
+    pub saved: Vec<(Saved, Span)>,
+    pub coordinate_systems: FxHashMap<String, [Transform; 2]>,
+    pub textures: FxHashMap<String, NodeId>,
+    pub materials: FxHashMap<String, NodeId>,
+    pub media: Vec<String>,
+    pub objects: FxHashMap<String, NodeId>,
+    pub open_object: Option<OpenObject>,
+    /// Files on the way down to the current one.
+    pub open_files: Vec<PathBuf>,
+    pub in_world: bool,
+    /// Options given before the film's size is known are built at the end.
+    pub film: Option<ParamSet>,
+    pub camera: Option<PendingCamera>,
+}
+
+/// A camera waits for the film, which decides its screen.
+pub(super) struct PendingCamera {
+    pub kind: String,
+    pub params: ParamSet,
+    pub world_from_camera: Transform,
+}
+
+impl<'a, 'c> Reader<'a, 'c> {
+    pub(super) fn new(context: &'a mut Context<'c>, folder: PathBuf) -> Self {
+        Self {
+            context,
+            folder,
+            desc: SceneDesc::default(),
+            state: GraphicsState {
+                ctm: [Transform::IDENTITY; 2],
+                active: [true; 2],
+                reverse_orientation: false,
+                material: None,
+                area_light: None,
+                defaults: FxHashMap::default(),
+            },
+            saved: Vec::new(),
+            coordinate_systems: FxHashMap::default(),
+            textures: FxHashMap::default(),
+            materials: FxHashMap::default(),
+            media: Vec::new(),
+            objects: FxHashMap::default(),
+            open_object: None,
+            open_files: Vec::new(),
+            in_world: false,
+            film: None,
+            camera: None,
+        }
+    }
+
+    pub(super) fn limits(&self) -> &Limits {
+        &self.context.options.limits
+    }
+
+    pub(super) fn warn(&mut self, message: impl Into<String>, at: Span) {
+        self.context.report.warn(message, at);
+    }
+
+    /// Adds a node.
+    pub(super) fn add(&mut self, family: Family, kind: &str, params: Params, at: Span) -> NodeId {
+        self.desc.add(Node::new(family, kind, params, at))
+    }
+
+    /// A texture by name.
+    pub(super) fn texture(&self, name: &str, at: Span) -> Result<Value, SceneError> {
+        match self.textures.get(name) {
+            Some(id) => Ok(Value::Node(*id)),
+            None => Err(unknown("texture", name, self.textures.keys(), at)),
+        }
+    }
+
+    /// The transform at the start of the shutter: motion is not rendered yet.
+    pub(super) fn ctm(&mut self, at: Span) -> Result<Transform, SceneError> {
+        let [start, end] = self.state.ctm;
+        if start != end {
+            self.warn("motion is not rendered yet: everything stays where it is when the shutter opens", at);
+        }
+        if start.is_invertible() {
+            Ok(start)
+        } else {
+            Err(SceneError::invalid("the current transform cannot be inverted", at))
+        }
+    }
+
+    /// Multiplies the active transforms.
+    pub(super) fn concat(&mut self, transform: Transform) {
+        for (ctm, active) in self.state.ctm.iter_mut().zip(self.state.active) {
+            if active {
+                *ctm = *ctm * transform;
+            }
+        }
+    }
+
+    /// Replaces the active transforms.
+    pub(super) fn replace(&mut self, transforms: [Transform; 2]) {
+        for (i, transform) in transforms.into_iter().enumerate() {
+            if self.state.active[i] {
+                self.state.ctm[i] = transform;
+            }
+        }
+    }
+}
+
+/// A name that nothing has.
+pub(super) fn unknown<'n>(
+    what: &'static str,
+    name: &str,
+    known: impl Iterator<Item = &'n String>,
+    at: Span,
+) -> SceneError {
+    let mut known: Vec<String> = known.cloned().collect();
+    known.sort();
+    SceneError::UnknownName { what, name: name.to_owned(), known, at }
+}

@@ -1,0 +1,163 @@
+//! Textures.
+
+use aureole_desc::{Family, Params, SceneError, Span, Value};
+use aureole_math::{Transform, Vector3};
+use aureole_spectrum::SpectrumSource;
+
+use super::params::ParamSet;
+use super::state::Reader;
+
+impl Reader<'_, '_> {
+    pub(super) fn texture_directive(
+        &mut self,
+        name: String,
+        value_type: &str,
+        class: &str,
+        given: &ParamSet,
+    ) -> Result<(), SceneError> {
+        let at = given.span;
+        if !matches!(value_type, "float" | "spectrum") {
+            let message = format!("a texture is `float` or `spectrum`, not `{value_type}`");
+            return Err(SceneError::syntax(message, at));
+        }
+        let (kind, params) = match class {
+            "constant" => ("constant", self.slots(given, &[("value", "value", 1.0)])?),
+            "scale" => ("scale", self.slots(given, &[("tex", "texture", 1.0), ("scale", "scale", 1.0)])?),
+            "mix" => (
+                "mix",
+                self.slots(given, &[("tex1", "a", 0.0), ("tex2", "b", 1.0), ("amount", "amount", 0.5)])?,
+            ),
+            "bilerp" => {
+                let corners =
+                    [("v00", "v00", 0.0), ("v01", "v01", 1.0), ("v10", "v10", 0.0), ("v11", "v11", 1.0)];
+                let mut params = self.slots(given, &corners)?;
+                params.push("to_uv", Value::Transform(self.mapping(given)?), at);
+                ("bilerp", params)
+            }
+            "checkerboard" => {
+                let mut params = self.slots(given, &[("tex1", "color0", 1.0), ("tex2", "color1", 0.0)])?;
+                if given.int("dimension", 2)? != 2 {
+                    self.warn("three-dimensional checkerboards are not rendered yet", at);
+                }
+                // pbrt's squares are one unit wide, Aureole's half a unit.
+                let half = Transform::scale(Vector3::new(0.5, 0.5, 1.0));
+                params.push("to_uv", Value::Transform(half * self.mapping(given)?), at);
+                ("checkerboard", params)
+            }
+            "imagemap" => ("bitmap", self.image(given)?),
+            "directionmix" | "dots" | "fbm" | "marble" | "ptex" | "windy" | "wrinkled" => {
+                self.warn(format!("texture `{class}` is not rendered yet: grey stands in for it"), at);
+                given.touch_all();
+                ("constant", Params::new().with("value", Value::Float(0.5)))
+            }
+            _ => {
+                let known = [
+                    "bilerp",
+                    "checkerboard",
+                    "constant",
+                    "directionmix",
+                    "dots",
+                    "fbm",
+                    "imagemap",
+                    "marble",
+                    "mix",
+                    "ptex",
+                    "scale",
+                    "windy",
+                    "wrinkled",
+                ];
+                let known = known.map(str::to_owned).to_vec();
+                return Err(SceneError::UnknownKind {
+                    family: Family::Texture,
+                    kind: class.to_owned(),
+                    known,
+                    at,
+                });
+            }
+        };
+        given.finish(&format!("texture `{class}`"), self.context.report);
+        let id = self.add(Family::Texture, kind, params, at);
+        self.desc[id].name = Some(name.clone());
+        self.textures.insert(name, id);
+        Ok(())
+    }
+
+    /// Parameters that are textures or constants, with pbrt's defaults.
+    fn slots(&self, given: &ParamSet, slots: &[(&str, &str, f32)]) -> Result<Params, SceneError> {
+        let mut params = Params::new();
+        for (theirs, ours, default) in slots {
+            let value = given.textured(theirs, self)?;
+            let value = value.unwrap_or(Value::Spectrum(SpectrumSource::Uniform(*default)));
+            params.push(*ours, value, given.at(theirs));
+        }
+        Ok(params)
+    }
+
+    /// The map from surface parameters to texture coordinates.
+    fn mapping(&mut self, given: &ParamSet) -> Result<Transform, SceneError> {
+        if let Some(kind) = given.text("mapping")?.filter(|kind| *kind != "uv") {
+            let (message, at) =
+                (format!("mapping `{kind}` is not rendered yet: `uv` is used"), given.at("mapping"));
+            for ignored in ["v1", "v2"] {
+                given.get(ignored);
+            }
+            self.warn(message, at);
+        }
+        let number = |name: &str, default: f64| given.float(name, default).map(|x| x as f32);
+        let scale = Vector3::new(number("uscale", 1.0)?, number("vscale", 1.0)?, 1.0);
+        let shift = Vector3::new(number("udelta", 0.0)?, number("vdelta", 0.0)?, 0.0);
+        let scale = Transform::scale(scale);
+        if !scale.is_invertible() {
+            return Err(SceneError::invalid("`uscale` and `vscale` must not be zero", given.span));
+        }
+        Ok(Transform::translate(shift) * scale)
+    }
+
+    fn image(&mut self, given: &ParamSet) -> Result<Params, SceneError> {
+        let at = given.span;
+        let path = given.path("filename", self)?.ok_or_else(|| SceneError::MissingParam {
+            element: "imagemap".into(),
+            param: "filename".into(),
+            wanted: "a picture file".into(),
+            at,
+        })?;
+        let mut params = Params::new();
+        params.push("filename", Value::Path(path), given.at("filename"));
+        let filter = if given.text("filter")? == Some("point") { "nearest" } else { "bilinear" };
+        params.push("filter", Value::String(filter.into()), at);
+        let wrap = match given.text("wrap")?.unwrap_or("repeat") {
+            wrap @ ("repeat" | "clamp" | "black") => wrap,
+            "octahedralsphere" => "clamp",
+            other => {
+                let message = format!("`wrap` is `repeat`, `black` or `clamp`, not `{other}`");
+                return Err(SceneError::invalid(message, given.at("wrap")));
+            }
+        };
+        params.push("wrap", Value::String(wrap.into()), at);
+        encoding(given.text("encoding")?.unwrap_or("sRGB"), given.at("encoding"), &mut params)?;
+        params.push("scale", Value::Float(given.float("scale", 1.0)?), at);
+        params.push("invert", Value::Bool(given.bool("invert", false)?), at);
+        params.push("to_uv", Value::Transform(self.mapping(given)?), at);
+        given.get("maxanisotropy");
+        Ok(params)
+    }
+}
+
+/// `sRGB`, `linear` or `gamma 2.2`.
+fn encoding(text: &str, at: Span, params: &mut Params) -> Result<(), SceneError> {
+    let mut words = text.split_whitespace();
+    let name = match (words.next(), words.next().map(str::parse::<f64>)) {
+        (Some("sRGB"), None) => "auto",
+        (Some("linear"), None) => "linear",
+        (Some("gamma"), Some(Ok(gamma))) if gamma > 0.0 => {
+            params.push("gamma", Value::Float(gamma), at);
+            "gamma"
+        }
+        _ => {
+            let message = format!("`encoding` is `sRGB`, `linear` or `gamma` and a number, not `{text}`");
+            return Err(SceneError::invalid(message, at));
+        }
+    };
+    params.push("encoding", Value::String(name.into()), at);
+    Ok(())
+}
