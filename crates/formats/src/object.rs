@@ -59,7 +59,7 @@ fn read_ply(input: Input<'_>, context: &mut Context<'_>) -> Result<SceneDesc, Sc
             let params = Params::new().with("name", name);
             Value::Node(scene.add(Node::new(Family::Texture, "mesh_attribute", params, at)))
         }
-        None => Value::Float(0.6),
+        None => Value::Float(0.7),
     };
     let bsdf = material::two_sided_diffuse(&mut scene, material, at);
     stage::set(&mut scene, [&mesh].into_iter(), input.path, at)?;

@@ -26,7 +26,7 @@ pub(super) fn two_sided_diffuse(scene: &mut SceneDesc, reflectance: Value, at: S
 
 /// For faces without a material.
 pub(super) fn default(scene: &mut SceneDesc, at: Span) -> Made {
-    Made { bsdf: two_sided_diffuse(scene, Value::Float(0.6), at), emission: None }
+    Made { bsdf: two_sided_diffuse(scene, Value::Float(0.7), at), emission: None }
 }
 
 /// Makes a material's nodes; its textures are looked for in `folder`.

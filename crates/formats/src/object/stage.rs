@@ -13,7 +13,7 @@ const FOV: f64 = 30.0;
 const SKY: f64 = 0.4;
 const KEY: f64 = 8.0;
 /// Distance and radius of the key light, in radii of the object. With these a white surface that faces the light gets
-/// about the radiance 1: KEY · (1.25 / 4)² + SKY.
+/// about the radiance 1.2: KEY · (1.25 / 4)² + SKY.
 const KEY_DISTANCE: f32 = 4.0;
 const KEY_RADIUS: f32 = 1.25;
 /// Radius of the ground, in radii of the object.
@@ -39,7 +39,7 @@ pub(super) fn set<'a>(
     // One point has no size; anything will do.
     let radius = if radius > 0.0 { radius } else { 1.0 };
     let center = bounds.centroid();
-    add_camera(scene, center, radius, at);
+    add_camera(scene, &bounds, radius, at);
     add_lights(scene, center, radius, at);
     add_ground(scene, Point3::new(center.x, bounds.min.y, center.z), radius, at);
     let params = Params::new().with("width", Value::Int(800)).with("height", Value::Int(600));
@@ -59,10 +59,10 @@ fn aim(from: Point3, target: Point3) -> Transform {
     Transform::look_at(from, target, Vector3::Y).unwrap_or(Transform::IDENTITY)
 }
 
-fn add_camera(scene: &mut SceneDesc, center: Point3, radius: f32, at: Span) {
-    // The ball around the object just fits between the rays at the border.
-    let distance = radius / ((FOV / 2.0).to_radians().sin() as f32) * 1.02;
-    let world_from_camera = aim(center + direction(28.0, 16.0) * distance, center);
+fn add_camera(scene: &mut SceneDesc, bounds: &Bounds3, radius: f32, at: Span) {
+    let (center, back) = (bounds.centroid(), direction(28.0, 22.0));
+    let distance = framing_distance(bounds, back).max(1.1 * radius);
+    let world_from_camera = aim(center + back * distance, center);
     let params = Params::new()
         .with("world_from_camera", Value::Transform(world_from_camera))
         .with("fov", Value::Float(FOV))
@@ -71,6 +71,18 @@ fn add_camera(scene: &mut SceneDesc, center: Point3, radius: f32, at: Span) {
         .with("far_clip", Value::Float(f64::from(distance) * 1e3));
     let camera = scene.add(Node::new(Family::Camera, "perspective", params, at).named("camera"));
     scene.cameras.push(camera);
+}
+
+/// How far back from its centre a box just fits between the rays at the border, with some room.
+fn framing_distance(bounds: &Bounds3, back: Vector3) -> f32 {
+    let center = bounds.centroid();
+    let camera_from_world = aim(center + back, center).inverse();
+    let slope = (FOV / 2.0).to_radians().tan() as f32;
+    let distances = bounds.corners().map(|corner| {
+        let v = camera_from_world.vector(corner - center);
+        v.x.abs().max(v.y.abs()) / slope - v.z
+    });
+    1.15 * distances.into_iter().fold(0.0, f32::max)
 }
 
 fn add_lights(scene: &mut SceneDesc, center: Point3, radius: f32, at: Span) {

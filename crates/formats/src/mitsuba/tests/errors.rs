@@ -161,3 +161,20 @@ fn what_has_no_use_is_said() {
         ["`a` is given twice: the last one counts", "<texture> inside of shape `disk` is ignored"]
     );
 }
+
+#[test]
+fn broken_scenes_never_panic() {
+    let whole = include_str!("../../gallery/materials.xml");
+    let mut rng = aureole_math::Pcg32::new(4);
+    for _ in 0..3000 {
+        let mut bytes = whole.as_bytes().to_vec();
+        for _ in 0..1 + rng.next_u32() % 3 {
+            let i = rng.next_u32() as usize % bytes.len();
+            bytes[i] ^= 1 << (rng.next_u32() % 7);
+        }
+        let outcome = read_with(&String::from_utf8_lossy(&bytes), &LoadOptions::default());
+        if let Err(error) = outcome.result {
+            outcome.sources.locate(error.span());
+        }
+    }
+}

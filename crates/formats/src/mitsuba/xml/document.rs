@@ -36,7 +36,7 @@ fn without_position(message: &str) -> String {
 
 /// The byte at a row and column, both counted from one, columns in characters.
 fn offset(text: &str, row: u32, column: u32) -> usize {
-    let before: usize = text.split_inclusive('\n').take(row as usize - 1).map(str::len).sum();
+    let before: usize = text.split_inclusive('\n').take((row as usize).saturating_sub(1)).map(str::len).sum();
     let line = &text[before..];
-    before + line.char_indices().nth(column as usize - 1).map_or(line.len(), |(i, _)| i)
+    before + line.char_indices().nth((column as usize).saturating_sub(1)).map_or(line.len(), |(i, _)| i)
 }
