@@ -37,12 +37,12 @@ pub fn difference_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
 /// [Pharr 2023] section 6.8.6.
 #[inline]
 pub fn offset_ray_origin(p: Point3, error: Vector3, n: Vector3, w: Vector3) -> Point3 {
-    let distance = n.abs().dot(error);
-    let offset = if w.dot(n) < 0.0 { -n * distance } else { n * distance };
-    let away = |x: f32, by: f32| match by {
-        by if by > 0.0 => next_up(x + by),
-        by if by < 0.0 => next_down(x + by),
-        _ => x,
+    let distance = n.abs().dot(error).copysign(w.dot(n));
+    let offset = n * distance;
+    // The sum rounds by at most half a unit in its last place: go a whole one further out.
+    let away = |x: f32, by: f32| {
+        let sum = x + by;
+        sum + (sum.abs() * f32::EPSILON).copysign(by)
     };
     Point3::new(away(p.x, offset.x), away(p.y, offset.y), away(p.z, offset.z))
 }

@@ -28,6 +28,12 @@ impl LightPicker {
         Self { distribution: Discrete::new(powers.iter().map(weight)) }
     }
 
+    /// Whether there is more than one light to choose from.
+    #[inline]
+    pub fn has_choice(&self) -> bool {
+        self.distribution.as_ref().is_some_and(|d| d.len() > 1)
+    }
+
     /// A light; `None` in a scene without any.
     #[inline]
     pub fn pick(&self, u: f32) -> Option<LightChoice> {

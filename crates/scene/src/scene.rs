@@ -192,8 +192,15 @@ impl Scene {
     }
 
     /// The scattering at a place, seen along unit `wo`.
-    #[inline]
     pub fn bsdf(&self, at: &Interaction<'_>, wo: Vector3, wavelengths: Wavelengths) -> Bsdf {
+        let mut bsdf = Bsdf::new();
+        self.bsdf_into(at, wo, wavelengths, &mut bsdf);
+        bsdf
+    }
+
+    /// [`bsdf`](Self::bsdf) into the place of an old one, which spares a copy.
+    #[inline]
+    pub fn bsdf_into(&self, at: &Interaction<'_>, wo: Vector3, wavelengths: Wavelengths, bsdf: &mut Bsdf) {
         let surface = &at.surface;
         let texture = TextureContext {
             textures: &self.textures,
@@ -211,9 +218,8 @@ impl Scene {
             dp_dv: surface.dp_dv,
             wo,
         };
-        let mut bsdf = Bsdf::new();
-        self.materials[at.material].evaluate(&context, 1.0, &mut bsdf);
-        bsdf
+        bsdf.clear();
+        self.materials[at.material].evaluate(&context, 1.0, bsdf);
     }
 
     /// What lights may ask for.

@@ -146,6 +146,11 @@ impl LobeOps for ConductorLobe {
         true
     }
 
+    #[inline]
+    fn has_choice(&self) -> bool {
+        false
+    }
+
     fn albedo(&self, wo: Vector3) -> Spectrum {
         self.metal.reflectance(wo.z.abs())
     }

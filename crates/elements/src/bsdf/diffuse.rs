@@ -81,6 +81,11 @@ impl LobeOps for DiffuseLobe {
         if wo.z > 0.0 && wi.z > 0.0 { warp::cosine_hemisphere_pdf(wi.z) } else { 0.0 }
     }
 
+    #[inline]
+    fn has_choice(&self) -> bool {
+        false
+    }
+
     fn albedo(&self, _: Vector3) -> Spectrum {
         self.reflectance
     }

@@ -69,6 +69,11 @@ pub trait LobeOps {
         false
     }
 
+    /// Whether [`sample`](Self::sample) looks at `uc`: a lobe of one part has nothing to choose.
+    fn has_choice(&self) -> bool {
+        true
+    }
+
     /// An estimate of how much light is scattered, for albedo images.
     fn albedo(&self, wo: Vector3) -> Spectrum;
 }
@@ -104,6 +109,10 @@ macro_rules! lobes {
             #[inline]
             fn is_delta(&self) -> bool {
                 match self { $(Self::$Variant(lobe) => lobe.is_delta()),* }
+            }
+            #[inline]
+            fn has_choice(&self) -> bool {
+                match self { $(Self::$Variant(lobe) => lobe.has_choice()),* }
             }
             fn albedo(&self, wo: Vector3) -> Spectrum {
                 match self { $(Self::$Variant(lobe) => lobe.albedo(wo)),* }

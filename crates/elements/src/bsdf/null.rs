@@ -53,6 +53,11 @@ impl LobeOps for NullLobe {
         true
     }
 
+    #[inline]
+    fn has_choice(&self) -> bool {
+        false
+    }
+
     fn albedo(&self, _: Vector3) -> Spectrum {
         Spectrum::ONE
     }

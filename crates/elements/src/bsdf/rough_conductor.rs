@@ -87,6 +87,11 @@ impl LobeOps for RoughConductorLobe {
         self.surface.pdf_visible(wo, m) / (4.0 * wo.abs_dot(m))
     }
 
+    #[inline]
+    fn has_choice(&self) -> bool {
+        false
+    }
+
     fn albedo(&self, wo: Vector3) -> Spectrum {
         self.metal.reflectance(wo.z.abs())
     }

@@ -20,12 +20,15 @@ const ENTRIES: usize = 24;
 /// Points of the quadrature in each dimension.
 const QUADRATURE: usize = 32;
 
+/// A table of shares in [0, 1], in steps of 1/65535: lobes are copied, so they are kept small.
+type Transmittance = [u16; ENTRIES];
+
 /// A rough plastic.
 #[derive(Clone, Copy, Debug)]
 pub struct RoughPlastic {
     coated: Coated,
     surface: Microfacet,
-    transmittance: [f32; ENTRIES],
+    transmittance: Transmittance,
     internal: f32,
 }
 
@@ -69,7 +72,9 @@ fn reflectance(surface: &Microfacet, cos: f32, eta: f32) -> f32 {
 impl RoughPlastic {
     fn new(coated: Coated, surface: Microfacet) -> Self {
         let cos = |i: usize| (i as f32 / (ENTRIES - 1) as f32).powi(2).max(1e-4);
-        let transmittance = std::array::from_fn(|i| transmittance(&surface, cos(i), coated.eta));
+        let transmittance = std::array::from_fn(|i| {
+            (transmittance(&surface, cos(i), coated.eta).clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
+        });
         const STEPS: usize = 32;
         let middle = |i: usize| (i as f32 + 0.5) / STEPS as f32;
         let internal = (0..STEPS)
@@ -118,7 +123,7 @@ pub struct RoughPlasticLobe {
     pub coat: Coat,
     /// The coat's facets.
     pub surface: Microfacet,
-    transmittance: [f32; ENTRIES],
+    transmittance: Transmittance,
 }
 
 impl RoughPlasticLobe {
@@ -127,7 +132,8 @@ impl RoughPlasticLobe {
         let place = cos.max(0.0).sqrt() * (ENTRIES - 1) as f32;
         let i = (place as usize).min(ENTRIES - 2);
         let t = place - i as f32;
-        self.transmittance[i] * (1.0 - t) + self.transmittance[i + 1] * t
+        let [a, b] = [self.transmittance[i], self.transmittance[i + 1]].map(f32::from);
+        (a + (b - a) * t) * (1.0 / 65535.0)
     }
 
     #[inline]

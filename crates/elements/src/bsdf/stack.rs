@@ -115,6 +115,21 @@ impl Bsdf {
         self.lobes.len()
     }
 
+    /// Takes all lobes away, to be used again.
+    #[inline]
+    pub fn clear(&mut self) {
+        self.lobes.clear();
+    }
+
+    /// Whether [`sample`](Self::sample) looks at `uc`.
+    #[inline]
+    pub fn has_choice(&self) -> bool {
+        match self.lobes.as_slice() {
+            [only] => only.lobe.has_choice(),
+            _ => true,
+        }
+    }
+
     /// Whether light sampling can contribute: some lobe is not a Dirac.
     #[inline]
     pub fn is_smooth(&self) -> bool {

@@ -80,7 +80,9 @@ impl TriangleMesh {
     /// Vertices of a triangle.
     #[inline]
     fn triangle(&self, primitive: usize) -> [Point3; 3] {
-        self.indices[primitive].map(|i| Point3::from(self.positions[i as usize]))
+        let [i, j, k] = self.indices[primitive];
+        let at = |i: u32| Point3::from(self.positions[i as usize]);
+        [at(i), at(j), at(k)]
     }
 
     /// Twice the area times the unit normal, as the vertices turn.
@@ -96,7 +98,9 @@ impl TriangleMesh {
         if self.uvs.is_empty() {
             [Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(0.0, 1.0)]
         } else {
-            self.indices[primitive].map(|i| Point2::from(self.uvs[i as usize]))
+            let [i, j, k] = self.indices[primitive];
+            let at = |i: u32| Point2::from(self.uvs[i as usize]);
+            [at(i), at(j), at(k)]
         }
     }
 
@@ -117,7 +121,8 @@ impl TriangleMesh {
     /// The point with given barycentric weights, its error, and its texture coordinates.
     #[inline]
     fn interpolate(&self, primitive: usize, b: [f32; 3]) -> (Point3, Vector3, Point2) {
-        let [p0, p1, p2] = self.triangle(primitive).map(Point3::to_vector);
+        let [p0, p1, p2] = self.triangle(primitive);
+        let [p0, p1, p2] = [p0.to_vector(), p1.to_vector(), p2.to_vector()];
         let p = p0 * b[0] + p1 * b[1] + p2 * b[2];
         let error = ((p0 * b[0]).abs() + (p1 * b[1]).abs() + (p2 * b[2]).abs()) * gamma(7);
         let [t0, t1, t2] = self.triangle_uvs(primitive);
@@ -200,7 +205,9 @@ impl ShapeOps for TriangleMesh {
         let mut ng = self.cross(primitive).normalized() * self.orientation;
         let mut ns = ng;
         if !self.normals.is_empty() {
-            let [n0, n1, n2] = self.indices[primitive].map(|i| Vector3::from(self.normals[i as usize]));
+            let [i, j, k] = self.indices[primitive];
+            let at = |i: u32| Vector3::from(self.normals[i as usize]);
+            let (n0, n1, n2) = (at(i), at(j), at(k));
             if let Some(n) = (n0 * b[0] + n1 * b[1] + n2 * b[2]).try_normalized() {
                 ns = n;
                 // Vertex normals decide which side is outside, as in pbrt and Mitsuba.

@@ -7,6 +7,7 @@
 //! Simulation".
 
 use aureole_desc::{ParamDoc, Params, SceneError};
+use aureole_elements::Bsdf;
 use aureole_elements::bsdf::TransportMode;
 use aureole_math::{Point3, Ray};
 use aureole_scene::{Interaction, Scene, SceneHit};
@@ -79,6 +80,7 @@ pub(super) struct PathState {
     shadow_rays: Vec<Ray>,
     pending: Vec<Pending>,
     blocked: Vec<bool>,
+    bsdf: Bsdf,
 }
 
 /// Random numbers of one bounce, by dimension.
@@ -146,20 +148,23 @@ impl Path {
         let wo = -ray.direction;
         let (sampler, key) = (&scene.sampler, start.key);
         let dimension = FIRST_FREE_DIMENSION + depth * PER_BOUNCE;
-        let bsdf = scene.bsdf(at, wo, Wavelengths::RGB);
+        // Numbers that decide nothing are not drawn.
+        let draw_if = |needed: bool, d: u32| if needed { sampler.get_1d(key, dimension + d) } else { 0.0 };
+        let bsdf = &mut state.bsdf;
+        scene.bsdf_into(at, wo, Wavelengths::RGB, bsdf);
         if bsdf.is_smooth() {
             let numbers = LightNumbers {
-                choice: sampler.get_1d(key, dimension + LIGHT_CHOICE),
+                choice: draw_if(scene.picker.has_choice(), LIGHT_CHOICE),
                 place: sampler.get_2d(key, dimension + LIGHT_PLACE),
             };
             let weighting = Weighting::Against { lights: 1, bsdfs: 1 };
-            if let Some(light) = sample_light(scene, at, &bsdf, wo, numbers, weighting, ray.time) {
+            if let Some(light) = sample_light(scene, at, bsdf, wo, numbers, weighting, ray.time) {
                 let contribution = segment.throughput * light.contribution;
                 state.shadow_rays.push(light.ray);
                 state.pending.push(Pending { path: segment.path, contribution });
             }
         }
-        let lobe = sampler.get_1d(key, dimension + LOBE);
+        let lobe = draw_if(bsdf.has_choice(), LOBE);
         let direction = sampler.get_2d(key, dimension + DIRECTION);
         let Some(drawn) = bsdf.sample(wo, lobe, direction, TransportMode::Radiance) else { return };
         let mut throughput = segment.throughput * drawn.weight;
