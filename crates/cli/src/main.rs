@@ -6,6 +6,7 @@ mod args;
 mod command;
 mod diagnostics;
 mod exit;
+mod memory;
 mod output;
 mod progress;
 mod session;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use aureole_desc::SceneError;
 use aureole_elements::camera::CameraSample;
 use aureole_elements::sampler::SampleKey;
-use aureole_image::Image;
+use aureole_image::{Image, Window};
 use aureole_math::{Point2, Vector2};
 use aureole_scene::{Crop, Scene};
 use aureole_spectrum::Spectrum;
@@ -226,6 +226,14 @@ impl Job<'_> {
     fn finish(&self, tiles: Vec<Mutex<FilmTile>>) -> Rendered {
         let crop = self.scene.film.crop;
         let mut image = Image::new(crop.width as usize, crop.height as usize, &["R", "G", "B"]);
+        let full = self.scene.film.full;
+        let whole = Crop { x: 0, y: 0, width: full.width, height: full.height };
+        image.window = (crop != whole).then_some(Window {
+            x: crop.x as i32,
+            y: crop.y as i32,
+            full_width: full.width as usize,
+            full_height: full.height as usize,
+        });
         let mut non_finite = 0;
         for tile in tiles {
             let tile = tile.into_inner().unwrap_or_else(PoisonError::into_inner);

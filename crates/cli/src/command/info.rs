@@ -9,6 +9,7 @@ use serde::Serialize;
 use crate::args::InfoArgs;
 use crate::diagnostics::Painter;
 use crate::exit::{Exit, Failure};
+use crate::memory;
 use crate::output::print;
 use crate::progress::{duration, quantity};
 use crate::session::{self, Session};
@@ -39,6 +40,8 @@ struct Info {
     load_seconds: f64,
     build_seconds: f64,
     accel: Accel,
+    /// The most that the process has had at once while it read and built the scene, where the system tells.
+    peak_memory_bytes: Option<u64>,
     warnings: Vec<String>,
 }
 
@@ -103,6 +106,7 @@ impl Info {
                 primitives: stats.primitives,
                 sah_cost: stats.sah_cost,
             },
+            peak_memory_bytes: memory::peak(),
             warnings: session.report.warnings.iter().map(|warning| warning.message.clone()).collect(),
         }
     }
@@ -122,12 +126,15 @@ impl Info {
         line("cameras", self.cameras.join(", "));
         line("lights", format!("{}{}", self.lights, listed(&self.kinds["light"])));
         line("shapes", format!("{}{}", self.shapes, listed(&self.kinds["shape"])));
-        line("primitives", format!("{} ({})", self.primitives, quantity(self.primitives as f64).trim_end()));
+        line("primitives", self.primitives.to_string());
         line("instances", format!("{} of {} groups", self.instances, self.groups));
         line("materials", format!("{}{}", self.materials, listed(&self.kinds["bsdf"])));
         line("textures", format!("{}{}", self.textures, listed(&self.kinds["texture"])));
         line("bounds", self.bounds.map_or("none".into(), |[low, high]| format!("{low:?} to {high:?}")));
         let accel = &self.accel;
+        let memory =
+            self.peak_memory_bytes.map_or("?".into(), |bytes| format!("{}B", quantity(bytes as f64)));
+        line("memory", format!("{memory} in all, at most"));
         line("acceleration", format!("{}B", quantity(accel.bytes as f64)));
         if with_accel {
             line("  nodes", format!("{}, {} leaves, {} deep", accel.nodes, accel.leaves, accel.depth));

@@ -9,6 +9,7 @@ use serde::Serialize;
 use crate::args::{Color, RenderArgs, StatsFormat};
 use crate::diagnostics::Painter;
 use crate::exit::{self, Exit, Failure};
+use crate::memory;
 use crate::output::{Output, print};
 use crate::progress::{Watch, duration, quantity};
 use crate::session::{self, Session};
@@ -148,7 +149,7 @@ fn tell(
                 render_seconds: stats.seconds,
                 samples: stats.samples,
                 rays: stats.rays,
-                peak_memory_bytes: peak_memory(),
+                peak_memory_bytes: memory::peak(),
                 non_finite: stats.non_finite,
                 complete: stats.complete,
                 file: output.to_string(),
@@ -172,23 +173,4 @@ fn tell(
 fn eprint(text: &str) {
     // Nobody is left to tell when standard error is closed.
     let _ = std::io::Write::write_all(&mut std::io::stderr(), text.as_bytes());
-}
-
-/// The most memory that the process has had at once, where the system tells.
-fn peak_memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kibibytes * 1024)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    #[cfg(target_os = "linux")]
-    fn the_system_tells_the_peak_memory() {
-        assert!(peak_memory().unwrap() > 1 << 16);
-    }
 }
