@@ -177,6 +177,28 @@ fn glass_in_even_surroundings_is_invisible() {
     }
 }
 
+/// A stack of panes makes a tree of rays that doubles at each: it is cut where it no longer matters.
+#[test]
+fn whitteds_tree_does_not_explode() {
+    let mut b = Builder::new();
+    let glass = b.node(Family::Bsdf, "thin_dielectric", Params::new().with("int_ior", Value::Float(1.5)));
+    for i in 0..24 {
+        let place = Transform::translate(Vector3::new(0.0, 0.0, i as f32 * 0.1));
+        b.shape(
+            "rectangle",
+            Params::new().with("bsdf", glass.clone()).with("world_from_object", Value::Transform(place)),
+        );
+    }
+    b.light("constant", Params::new());
+    b.camera([0.0, 0.0, 9.0], [0.0, 0.0, 0.0], Vector3::Y);
+    b.0.set("integrator.max_depth", "-1").unwrap();
+    let scene = compile(&b.0, &CompileOptions::default(), &mut Report::default()).unwrap();
+    let options =
+        RenderOptions { spp: Some(1), integrator: Some("whitted".into()), ..RenderOptions::default() };
+    let rendered = render(&scene, &options, &Silent).unwrap();
+    assert!(rendered.stats.rays < 64 * 100_000, "{} rays for 64 samples", rendered.stats.rays);
+}
+
 #[test]
 fn threads_do_not_change_a_bit() {
     let mut b = ball_in_the_fog(0.6, 2.0);
