@@ -24,7 +24,7 @@ pub enum AccelError {
         /// How many vertices there are.
         vertices: usize,
     },
-    /// More than 2³² - 1 primitives.
+    /// 2²⁷ primitives or more in one level.
     #[error("{0} primitives are too many")]
     TooMany(u64),
 }

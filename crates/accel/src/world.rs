@@ -58,9 +58,7 @@ impl World {
             );
             ids.extend((0..indices.len() as u32).map(|p| [g as u32, p]));
         }
-        if boxes.len() >= 1 << 28 {
-            return Err(AccelError::TooMany(boxes.len() as u64));
-        }
+        check_count(boxes.len())?;
         self.bounds = boxes.iter().fold(self.bounds, |b, other| b.union(*other));
         let mut blocks = Vec::new();
         let vertices = |[g, p]: [u32; 2]| match &geometries[g as usize] {
@@ -116,6 +114,7 @@ impl World {
                 }
             }
         }
+        check_count(boxes.len())?;
         self.bounds = boxes.iter().fold(self.bounds, |b, other| b.union(*other));
         let mut order = Vec::new();
         let mut pack = |items: &[u32]| {
@@ -162,6 +161,11 @@ impl World {
     pub fn occluded_many<U: UserShapes>(&self, rays: &[Ray], blocked: &mut [bool], user: &U) {
         simd::run(query::Occluded { world: self, rays, blocked, user });
     }
+}
+
+/// Leaves name their first item in 27 bits.
+fn check_count(items: usize) -> Result<(), AccelError> {
+    if items < 1 << 27 { Ok(()) } else { Err(AccelError::TooMany(items as u64)) }
 }
 
 fn check_mesh(geometry: usize, positions: &[[f32; 3]], indices: &[[u32; 3]]) -> Result<(), AccelError> {

@@ -6,7 +6,7 @@
 
 use aureole_math::Bounds3;
 
-use super::node::{Bvh8, COUNT_BITS, LEAF, Node, Stats, WIDTH};
+use super::node::{Bvh8, COUNT_BITS, FREE_LEVELS, LEAF, Node, Stats, WIDTH};
 use crate::Config;
 
 /// A binary tree, which only the builder sees.
@@ -77,7 +77,8 @@ fn split(items: &mut [Item], first: u32, config: &Config, depth: usize) -> Tree 
         None => items.len() / 2, // everything in one place: halve the list
     };
     // A hostile input could make a tree as deep as it is long.
-    let middle = if depth > 64 || middle == 0 || middle == items.len() { items.len() / 2 } else { middle };
+    let middle =
+        if depth >= FREE_LEVELS || middle == 0 || middle == items.len() { items.len() / 2 } else { middle };
     let (left, right) = items.split_at_mut(middle);
     let right_first = first + middle as u32;
     let children = if left.len() + right.len() > PARALLEL {

@@ -2,16 +2,18 @@
 
 use aureole_math::{Ray, Vector3, gamma};
 
-use super::node::{Bvh8, COUNT_BITS, LEAF, Node, WIDTH};
+use super::node::{Bvh8, COUNT_BITS, LEAF, MAX_LEVELS, Node, WIDTH};
 
-/// Children left for later and where the ray enters them: seven a level, for a depth that the builder bounds.
+/// Children left for later and where the ray enters them: at most seven a level.
 ///
 /// Kept from ray to ray: clearing it would cost more than many a walk.
-pub(crate) struct Stack([(u32, f32); 512]);
+pub(crate) struct Stack([(u32, f32); STACK]);
+
+const STACK: usize = (WIDTH - 1) * MAX_LEVELS + WIDTH;
 
 impl Default for Stack {
     fn default() -> Self {
-        Self([(0, 0.0); 512])
+        Self([(0, 0.0); STACK])
     }
 }
 
