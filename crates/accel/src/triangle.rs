@@ -6,6 +6,7 @@
 use aureole_math::{Ray, gamma};
 
 use crate::Hit;
+use crate::simd::same_signs;
 
 /// Triangles in a block.
 pub(crate) const LANES: usize = 4;
@@ -95,17 +96,12 @@ pub(crate) fn intersect(block: &Block, ray: &ShearedRay, t_max: f32, mut found: 
     let mut u = [0.0_f32; LANES];
     let mut v = [0.0_f32; LANES];
     let mut w = [0.0_f32; LANES];
-    let mut candidates = 0_u32;
     for i in 0..LANES {
         u[i] = x[2][i] * y[1][i] - y[2][i] * x[1][i];
         v[i] = x[0][i] * y[2][i] - y[0][i] * x[2][i];
         w[i] = x[1][i] * y[0][i] - y[1][i] * x[0][i];
     }
-    for i in 0..LANES {
-        let all_up = (u[i] >= 0.0) & (v[i] >= 0.0) & (w[i] >= 0.0);
-        let all_down = (u[i] <= 0.0) & (v[i] <= 0.0) & (w[i] <= 0.0);
-        candidates |= u32::from(all_up | all_down) << i;
-    }
+    let mut candidates = same_signs(&u, &v, &w);
     while candidates != 0 {
         let i = candidates.trailing_zeros() as usize;
         candidates &= candidates - 1;

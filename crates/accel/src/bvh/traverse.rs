@@ -2,6 +2,8 @@
 
 use aureole_math::{Ray, Vector3, gamma};
 
+use crate::simd::{Avx2, Slabs};
+
 use super::node::{Bvh8, COUNT_BITS, LEAF, MAX_LEVELS, Node, WIDTH};
 
 /// Children left for later and where the ray enters them: at most seven a level.
@@ -25,6 +27,7 @@ pub(crate) struct TraversalRay {
     /// Which side of each axis's slabs is entered first.
     near: [usize; 3],
     t_min: f32,
+    avx2: Option<Avx2>,
 }
 
 impl TraversalRay {
@@ -39,6 +42,7 @@ impl TraversalRay {
             inv,
             near: inv.map(|x| usize::from(x.is_sign_negative())),
             t_min: ray.t_min,
+            avx2: Avx2::detect(),
         }
     }
 }
@@ -49,24 +53,17 @@ const FAR_SCALE: f32 = 1.0 + 2.0 * gamma(3);
 /// Where the ray enters each of the eight boxes, and a bit for each that it meets before `t_max`.
 #[inline(always)]
 fn intersect_boxes(node: &Node, ray: &TraversalRay, t_max: f32) -> ([f32; WIDTH], u32) {
-    let mut enter = [ray.t_min; WIDTH];
-    let mut leave = [t_max; WIDTH];
-    for axis in 0..3 {
-        let near = &node.planes[axis][ray.near[axis]];
-        let far = &node.planes[axis][1 - ray.near[axis]];
-        let (o, inv) = (ray.origin[axis], ray.inv[axis]);
-        for i in 0..WIDTH {
-            let a = (near[i] - o) * inv;
-            let b = (far[i] - o) * inv * FAR_SCALE;
-            enter[i] = if a > enter[i] { a } else { enter[i] };
-            leave[i] = if b < leave[i] { b } else { leave[i] };
-        }
-    }
-    let mut mask = 0;
-    for i in 0..WIDTH {
-        mask |= u32::from(enter[i] <= leave[i]) << i;
-    }
-    (enter, mask)
+    let side = |axis: usize, far: usize| &node.planes[axis][ray.near[axis] ^ far];
+    let slabs = Slabs {
+        near: [side(0, 0), side(1, 0), side(2, 0)],
+        far: [side(0, 1), side(1, 1), side(2, 1)],
+        o: ray.origin,
+        inv: ray.inv,
+        far_scale: FAR_SCALE,
+        t_min: ray.t_min,
+        t_max,
+    };
+    slabs.test(ray.avx2)
 }
 
 /// What a leaf says after it was tested.
