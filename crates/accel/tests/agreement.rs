@@ -168,3 +168,35 @@ fn a_closed_mesh_is_watertight() {
         );
     }
 }
+
+/// Copies of one triangle in many leaves: rounding of a box's entry must not hide the copy with the smallest number.
+#[test]
+fn ties_across_leaves_go_to_the_smallest_number() {
+    let mut rng = Pcg32::new(21);
+    for round in 0..40 {
+        let mut positions = Vec::new();
+        // Flat in one axis, so that the box is entered exactly where the triangle is.
+        let (axis, at) = (round % 3, rng.next_f32());
+        for _ in 0..3 {
+            let mut p = [rng.next_f32(), rng.next_f32(), rng.next_f32()];
+            p[axis] = at;
+            positions.push(p);
+        }
+        let indices: Arc<[[u32; 3]]> = vec![[0, 1, 2]; 200].into();
+        agree_somewhere(&[Geometry::Triangles { positions: positions.into(), indices }], round as u64);
+    }
+}
+
+/// The hierarchy and the list agree on oblique rays from near and far.
+fn agree_somewhere(geometries: &[Geometry], seed: u64) {
+    let build =
+        |structure| World::build(geometries.to_vec(), 0, &Config { structure, ..Config::default() }).unwrap();
+    let (list, tree) = (build(Structure::List), build(Structure::Hierarchy));
+    let mut rng = Pcg32::new(seed);
+    for _ in 0..4000 {
+        let direction = warp::square_to_uniform_sphere(rng.point2());
+        let target = Point3::new(rng.next_f32(), rng.next_f32(), rng.next_f32());
+        let ray = Ray::new(target - direction * (rng.next_f32() * 40.0), direction);
+        assert_eq!(tree.closest_hit(&ray, &NoUserShapes), list.closest_hit(&ray, &NoUserShapes), "{ray:?}");
+    }
+}

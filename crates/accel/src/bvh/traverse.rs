@@ -47,6 +47,9 @@ impl TraversalRay {
     }
 }
 
+/// How far behind the best hit boxes are still opened: where a ray enters a box and where it meets a triangle in it are
+/// rounded differently, and of equally near hits the one with the smallest number must be found.
+const TIE_SCALE: f32 = 1.0 + 1e-5;
 /// Makes the far side reach as far as rounding could have taken it back [Ize 2013].
 const FAR_SCALE: f32 = 1.0 + 2.0 * gamma(3);
 
@@ -61,7 +64,7 @@ fn intersect_boxes(node: &Node, ray: &TraversalRay, t_max: f32) -> ([f32; WIDTH]
         inv: ray.inv,
         far_scale: FAR_SCALE,
         t_min: ray.t_min,
-        t_max,
+        t_max: t_max * TIE_SCALE,
     };
     slabs.test(ray.avx2)
 }
@@ -132,7 +135,7 @@ impl Bvh8 {
                     return;
                 }
                 top -= 1;
-                if stack[top].1 <= t_max {
+                if stack[top].1 <= t_max * TIE_SCALE {
                     current = stack[top].0;
                     break;
                 }
