@@ -189,8 +189,10 @@ fn ties_across_leaves_go_to_the_smallest_number() {
 
 /// The hierarchy and the list agree on oblique rays from near and far.
 fn agree_somewhere(geometries: &[Geometry], seed: u64) {
-    let build =
-        |structure| World::build(geometries.to_vec(), 0, &Config { structure, ..Config::default() }).unwrap();
+    let build = |structure| {
+        World::build(geometries.to_vec(), 0, &Config { structure, ..Config::default() })
+            .expect("finite triangles build")
+    };
     let (list, tree) = (build(Structure::List), build(Structure::Hierarchy));
     let mut rng = Pcg32::new(seed);
     for _ in 0..4000 {
