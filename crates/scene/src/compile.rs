@@ -44,7 +44,6 @@ pub fn compile(desc: &SceneDesc, options: &CompileOptions, report: &mut Report) 
         unbounded: Vec::new(),
         default_material: None,
         begun_groups: Vec::new(),
-        lit_groups: false,
     };
     let world = compiler.world()?;
     compiler.lights()?;
@@ -69,7 +68,6 @@ struct Compiler<'a> {
     unbounded: Vec<Object>,
     default_material: Option<Id<Material>>,
     begun_groups: Vec<NodeId>,
-    lit_groups: bool,
 }
 
 fn default_node(family: Family, kind: &str) -> Node {
@@ -183,7 +181,6 @@ impl Compiler<'_> {
         };
         let light = match params.try_node("emission")? {
             Some(_) if level > 0 => {
-                self.lit_groups = true;
                 let help = "place the shape in the world itself".to_owned();
                 self.resolve.report.warn_with_help(
                     "shapes inside groups cannot shine yet",

@@ -207,7 +207,6 @@ impl Reader<'_, '_> {
             "Material" => self.state.material = Some(self.material(kind, &params)?),
             "MakeNamedMaterial" => self.make_named_material(kind, &params)?,
             "MakeNamedMedium" => {
-                self.media.push(kind.to_owned());
                 self.warn("participating media are not rendered yet", at);
             }
             _ => unreachable!("the list of directives is matched above"),

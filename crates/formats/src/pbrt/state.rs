@@ -48,7 +48,6 @@ pub(super) struct Reader<'a, 'c> {
     pub coordinate_systems: FxHashMap<String, [Transform; 2]>,
     pub textures: FxHashMap<String, NodeId>,
     pub materials: FxHashMap<String, NodeId>,
-    pub media: Vec<String>,
     pub objects: FxHashMap<String, NodeId>,
     pub open_object: Option<OpenObject>,
     /// Files on the way down to the current one.
@@ -84,7 +83,6 @@ impl<'a, 'c> Reader<'a, 'c> {
             coordinate_systems: FxHashMap::default(),
             textures: FxHashMap::default(),
             materials: FxHashMap::default(),
-            media: Vec::new(),
             objects: FxHashMap::default(),
             open_object: None,
             open_files: Vec::new(),
