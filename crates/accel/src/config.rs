@@ -10,21 +10,35 @@ pub enum Structure {
     Hierarchy,
 }
 
+/// How rays are tested against triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Accuracy {
+    /// No ray slips through between triangles that share an edge, and none hits the triangle that it starts on.
+    #[default]
+    Watertight,
+    /// The fewest operations.
+    Fast,
+}
+
+/// How much time a build takes for how good a hierarchy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// Along a space-filling curve: for what changes with every frame.
+    Fast,
+    /// By the surface-area heuristic over bins.
+    #[default]
+    Medium,
+    /// Large primitives split, and the tree optimised afterwards.
+    High,
+}
+
 /// Options of a build.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Config {
     /// The structure.
     pub structure: Structure,
-    /// Bins of the surface-area heuristic.
-    pub bins: usize,
-    /// Primitives in a leaf at most.
-    pub max_leaf_size: usize,
-    /// Cost of visiting a node over that of testing a primitive.
-    pub traversal_cost: f32,
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        Self { structure: Structure::Hierarchy, bins: 16, max_leaf_size: 8, traversal_cost: 1.0 }
-    }
+    /// The triangle test.
+    pub accuracy: Accuracy,
+    /// The hierarchy's quality.
+    pub quality: Quality,
 }

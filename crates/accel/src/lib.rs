@@ -26,7 +26,7 @@ mod triangle;
 mod world;
 
 pub use bvh::Stats;
-pub use config::{Config, Structure};
+pub use config::{Accuracy, Config, Quality, Structure};
 pub use error::AccelError;
 pub use hit::{Geometry, Hit, NO_INSTANCE, NoUserShapes, UserHit, UserShapes};
 pub use world::World;

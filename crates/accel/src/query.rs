@@ -2,125 +2,220 @@
 //!
 //! All of it insists on being inlined, so that it is compiled as a whole for each instruction set.
 
+use std::marker::PhantomData;
+
 use aureole_math::Ray;
 
-use crate::bvh::{Bvh8, Leaf, Stack, TraversalRay, VisitLeaf};
-use crate::simd::Kernel;
-use crate::triangle::{self, ShearedRay};
+use crate::bvh::{Bvh8, Leaf, VisitLeaf};
+use crate::simd::{self, Kernel, Simd, lanes};
+use crate::triangle::{Fast, TriangleTest, Watertight};
 use crate::world::Object;
-use crate::{Hit, NO_INSTANCE, Structure, UserShapes, World};
+use crate::{Accuracy, Hit, NO_INSTANCE, Structure, UserShapes, World};
 
 /// The nearest hits of rays.
-pub(crate) struct Closest<'a, U> {
-    pub world: &'a World,
-    pub rays: &'a [Ray],
-    pub hits: &'a mut [Hit],
-    pub user: &'a U,
+pub(crate) fn closest_hits<U: UserShapes>(world: &World, rays: &[Ray], hits: &mut [Hit], user: &U) {
+    match world.accuracy {
+        Accuracy::Watertight => simd::run(Closest::<U, Watertight>(world, rays, hits, user, PhantomData)),
+        Accuracy::Fast => simd::run(Closest::<U, Fast>(world, rays, hits, user, PhantomData)),
+    }
 }
 
 /// Whether rays hit anything.
-pub(crate) struct Occluded<'a, U> {
-    pub world: &'a World,
-    pub rays: &'a [Ray],
-    pub blocked: &'a mut [bool],
-    pub user: &'a U,
+pub(crate) fn occluded<U: UserShapes>(world: &World, rays: &[Ray], blocked: &mut [bool], user: &U) {
+    match world.accuracy {
+        Accuracy::Watertight => simd::run(Occluded::<U, Watertight>(world, rays, blocked, user, PhantomData)),
+        Accuracy::Fast => simd::run(Occluded::<U, Fast>(world, rays, blocked, user, PhantomData)),
+    }
 }
 
-impl<U: UserShapes> Kernel for Closest<'_, U> {
+struct Closest<'a, U, T>(&'a World, &'a [Ray], &'a mut [Hit], &'a U, PhantomData<T>);
+
+impl<U: UserShapes, T: TriangleTest> Kernel for Closest<'_, U, T> {
+    type Output = ();
     #[inline(always)]
-    fn run(self) {
-        let mut stack = Stack::default();
-        for (ray, hit) in self.rays.iter().zip(self.hits) {
-            let best = Hit { t: ray.t_max, ..Hit::NONE };
-            let mut nearest =
-                Nearest { world: self.world, user: self.user, ray, sheared: ShearedRay::new(ray), best };
-            nearest.search(&mut stack);
-            *hit = if nearest.best.is_some() { nearest.best } else { Hit::NONE };
+    fn run<S: Simd>(self) {
+        let Self(world, rays, hits, user, _) = self;
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = closest::<S, T, U>(world, ray, user);
         }
     }
 }
 
-impl<U: UserShapes> Kernel for Occluded<'_, U> {
+struct Occluded<'a, U, T>(&'a World, &'a [Ray], &'a mut [bool], &'a U, PhantomData<T>);
+
+impl<U: UserShapes, T: TriangleTest> Kernel for Occluded<'_, U, T> {
+    type Output = ();
     #[inline(always)]
-    fn run(self) {
-        let mut stack = Stack::default();
-        for (ray, blocked) in self.rays.iter().zip(self.blocked) {
-            let sheared = ShearedRay::new(ray);
-            let mut any = Any { world: self.world, user: self.user, ray, sheared, blocked: false };
-            any.search(&mut stack);
-            *blocked = any.blocked;
+    fn run<S: Simd>(self) {
+        let Self(world, rays, blocked, user, _) = self;
+        for (ray, blocked) in rays.iter().zip(blocked) {
+            *blocked = any::<S, T, U>(world, ray, user);
         }
     }
 }
 
-/// Visits the leaves of a hierarchy that a ray may meet, or all of them for the list.
 #[inline(always)]
-fn walk(
+fn closest<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, user: &U) -> Hit {
+    let mut best = Hit { t: ray.t_max, ..Hit::NONE };
+    if !world.blocks.is_empty() {
+        let nearest = Candidate { t: ray.t_max, u: 0.0, v: 0.0, id: 0 };
+        let mut among = NearestTriangle { world, user, ray, test: T::new(ray), nearest };
+        walk::<S>(world, &world.triangles, world.blocks.len(), ray, ray.t_max, &mut among);
+        if among.nearest.t < ray.t_max {
+            best = among.nearest.hit(world);
+        }
+    }
+    if !world.objects.is_empty() {
+        let mut among = NearestObject { world, user, ray, best };
+        walk::<S>(world, &world.objects_bvh, world.objects.len(), ray, best.t, &mut among);
+        best = among.best;
+    }
+    if best.is_some() { best } else { Hit::NONE }
+}
+
+#[inline(always)]
+fn any<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
+    let mut triangle = AnyTriangle { world, user, ray, test: T::new(ray), blocked: false };
+    walk::<S>(world, &world.triangles, world.blocks.len(), ray, ray.t_max, &mut triangle);
+    if triangle.blocked || world.objects.is_empty() {
+        return triangle.blocked;
+    }
+    let mut object = AnyObject { world, user, ray, blocked: false };
+    walk::<S>(world, &world.objects_bvh, world.objects.len(), ray, ray.t_max, &mut object);
+    object.blocked
+}
+
+/// Visits the leaves of a structure that a ray may meet.
+#[inline(always)]
+fn walk<S: Simd>(
     world: &World,
     bvh: &Bvh8,
     count: usize,
-    ray: &TraversalRay,
+    ray: &Ray,
     t_max: f32,
-    stack: &mut Stack,
     visitor: &mut impl VisitLeaf,
 ) {
-    if world.structure == Structure::List {
-        visitor.visit(0, count);
-    } else {
-        bvh.walk(ray, t_max, stack, visitor);
+    match world.structure {
+        Structure::List => {
+            visitor.visit::<S>(0, count);
+        }
+        Structure::Hierarchy => bvh.walk::<S>(ray, t_max, visitor),
     }
 }
 
-/// The search for the nearest hit of one ray.
-struct Nearest<'a, U> {
+/// A hit with a triangle, by its number in the level.
+#[derive(Clone, Copy)]
+struct Candidate {
+    t: f32,
+    u: f32,
+    v: f32,
+    id: u32,
+}
+
+impl Candidate {
+    fn hit(&self, world: &World) -> Hit {
+        let (geometry, primitive) = world.triangle_of(self.id);
+        Hit { t: self.t, u: self.u, v: self.v, primitive, geometry, instance: NO_INSTANCE }
+    }
+
+    /// Which of two hits counts: the nearer one, and of equally near ones that with the smaller number.
+    #[inline(always)]
+    fn beats(&self, other: &Self) -> bool {
+        self.t < other.t || (self.t == other.t && self.id < other.id)
+    }
+}
+
+/// The search for the nearest triangle. Before one is found, the ray's end stands for it, with a number that no other
+/// beats: a hit at the very end does not count.
+struct NearestTriangle<'a, U, T> {
     world: &'a World,
     user: &'a U,
     ray: &'a Ray,
-    sheared: ShearedRay,
+    test: T,
+    nearest: Candidate,
+}
+
+impl<U: UserShapes, T: TriangleTest> VisitLeaf for NearestTriangle<'_, U, T> {
+    const ANY: bool = false;
+
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf {
+        for block in &self.world.blocks[first..first + count] {
+            let hits = self.test.intersect::<S>(block, self.nearest.t);
+            for i in lanes(hits.mask) {
+                let found = Candidate { t: hits.t[i], u: hits.u[i], v: hits.v[i], id: block.ids[i] };
+                let is_accepted =
+                    || !U::HAS_FILTER || self.user.accept(self.world.tag, &found.hit(self.world), self.ray);
+                if found.beats(&self.nearest) && is_accepted() {
+                    self.nearest = found;
+                }
+            }
+        }
+        Leaf::Continue(self.nearest.t)
+    }
+}
+
+/// The search for any triangle.
+struct AnyTriangle<'a, U, T> {
+    world: &'a World,
+    user: &'a U,
+    ray: &'a Ray,
+    test: T,
+    blocked: bool,
+}
+
+impl<U: UserShapes, T: TriangleTest> VisitLeaf for AnyTriangle<'_, U, T> {
+    const ANY: bool = true;
+
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf {
+        for block in &self.world.blocks[first..first + count] {
+            let hits = self.test.intersect::<S>(block, self.ray.t_max);
+            for i in lanes(hits.mask) {
+                let found = Candidate { t: hits.t[i], u: hits.u[i], v: hits.v[i], id: block.ids[i] };
+                let is_accepted =
+                    || !U::HAS_FILTER || self.user.accept(self.world.tag, &found.hit(self.world), self.ray);
+                if found.t < self.ray.t_max && is_accepted() {
+                    self.blocked = true;
+                    return Leaf::Stop;
+                }
+            }
+        }
+        Leaf::Continue(self.ray.t_max)
+    }
+}
+
+/// The search for the nearest of the other things, after that among triangles.
+struct NearestObject<'a, U> {
+    world: &'a World,
+    user: &'a U,
+    ray: &'a Ray,
     best: Hit,
 }
 
-/// The part of a search that is among triangles.
-struct AmongTriangles<'s, S>(&'s mut S);
-/// The part of a search that is among everything else.
-struct AmongObjects<'s, S>(&'s mut S);
-
-impl<U: UserShapes> Nearest<'_, U> {
-    #[inline(always)]
-    fn search(&mut self, stack: &mut Stack) {
-        let world = self.world;
-        let ray = TraversalRay::new(self.ray);
-        let t_max = self.best.t;
-        walk(world, &world.triangles, world.blocks.len(), &ray, t_max, stack, &mut AmongTriangles(self));
-        if !world.objects.is_empty() {
-            let t_max = self.best.t;
-            walk(world, &world.objects_bvh, world.objects.len(), &ray, t_max, stack, &mut AmongObjects(self));
-        }
-    }
-
+impl<U: UserShapes> NearestObject<'_, U> {
     /// Takes a hit when it is nearer than the best one and accepted. The ray's own end does not count as a hit.
-    #[inline(always)]
     fn offer(&mut self, hit: Hit) {
-        let inside = hit.t < self.ray.t_max;
         let is_accepted = || !U::HAS_FILTER || self.user.accept(self.world.tag, &hit, self.ray);
-        if inside && hit.beats(&self.best) && is_accepted() {
+        if hit.t < self.ray.t_max && hit.beats(&self.best) && is_accepted() {
             self.best = hit;
         }
     }
 
     fn object(&mut self, object: &Object) {
+        // One step beyond the best hit, so that an equally near thing can win by its number.
+        let until_best = self.best.t.next_up().min(self.ray.t_max);
         match object {
             Object::User { geometry, primitive } => {
                 let (geometry, primitive) = (*geometry, *primitive);
-                // One step beyond the best hit, so that an equally near shape can win by its number.
-                let ray_to_best = self.ray.until(self.best.t.next_up().min(self.ray.t_max));
-                if let Some(found) = self.user.intersect(self.world.tag, geometry, primitive, &ray_to_best) {
+                let ray = self.ray.until(until_best);
+                if let Some(found) = self.user.intersect(self.world.tag, geometry, primitive, &ray) {
                     let (t, u, v) = (found.t, found.u, found.v);
                     self.offer(Hit { t, u, v, primitive, geometry, instance: NO_INSTANCE });
                 }
             }
             Object::Instance { geometry, level, object_from_world } => {
-                let local = object_from_world.ray(self.ray).until(self.best.t.next_up().min(self.ray.t_max));
+                let local = object_from_world.ray(self.ray).until(until_best);
                 if let Some(inner) = level.closest_hit(&local, self.user) {
                     let hit = Hit { instance: *geometry, ..inner };
                     if hit.beats(&self.best) {
@@ -132,92 +227,51 @@ impl<U: UserShapes> Nearest<'_, U> {
     }
 }
 
-impl<U: UserShapes> VisitLeaf for AmongTriangles<'_, Nearest<'_, U>> {
+impl<U: UserShapes> VisitLeaf for NearestObject<'_, U> {
+    const ANY: bool = false;
+
     #[inline(always)]
-    fn visit(&mut self, first: usize, count: usize) -> Leaf {
-        for block in &self.0.world.blocks[first..first + count] {
-            let (sheared, t_max) = (self.0.sheared, self.0.best.t);
-            triangle::intersect(block, &sheared, t_max, |hit| self.0.offer(block.hit(&hit)));
+    fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf {
+        for object in &self.world.objects[first..first + count] {
+            self.object(object);
         }
-        Leaf::Continue(self.0.best.t)
+        Leaf::Continue(self.best.t)
     }
 }
 
-impl<U: UserShapes> VisitLeaf for AmongObjects<'_, Nearest<'_, U>> {
-    #[inline(always)]
-    fn visit(&mut self, first: usize, count: usize) -> Leaf {
-        for object in &self.0.world.objects[first..first + count] {
-            self.0.object(object);
-        }
-        Leaf::Continue(self.0.best.t)
-    }
-}
-
-/// The search for any hit of one ray.
-struct Any<'a, U> {
+/// The search for any of the other things.
+struct AnyObject<'a, U> {
     world: &'a World,
     user: &'a U,
     ray: &'a Ray,
-    sheared: ShearedRay,
     blocked: bool,
 }
 
-impl<U: UserShapes> Any<'_, U> {
-    #[inline(always)]
-    fn search(&mut self, stack: &mut Stack) {
-        let world = self.world;
-        let ray = TraversalRay::new(self.ray);
-        let t_max = self.ray.t_max;
-        walk(world, &world.triangles, world.blocks.len(), &ray, t_max, stack, &mut AmongTriangles(self));
-        if !self.blocked && !world.objects.is_empty() {
-            walk(world, &world.objects_bvh, world.objects.len(), &ray, t_max, stack, &mut AmongObjects(self));
-        }
-    }
-
-    #[inline(always)]
-    fn found(&mut self, hit: Hit) {
-        let is_accepted = || !U::HAS_FILTER || self.user.accept(self.world.tag, &hit, self.ray);
-        self.blocked |= hit.t < self.ray.t_max && is_accepted();
-    }
-
-    #[inline(always)]
-    fn verdict(&self) -> Leaf {
-        if self.blocked { Leaf::Stop } else { Leaf::Continue(self.ray.t_max) }
-    }
-
-    fn object(&mut self, object: &Object) {
+impl<U: UserShapes> AnyObject<'_, U> {
+    fn object(&self, object: &Object) -> bool {
+        let (ray, user, level_tag) = (self.ray, self.user, self.world.tag);
         match object {
             Object::User { geometry, primitive } => {
                 let (geometry, primitive) = (*geometry, *primitive);
-                if let Some(found) = self.user.intersect(self.world.tag, geometry, primitive, self.ray) {
+                user.intersect(level_tag, geometry, primitive, ray).is_some_and(|found| {
                     let (t, u, v) = (found.t, found.u, found.v);
-                    self.found(Hit { t, u, v, primitive, geometry, instance: NO_INSTANCE });
-                }
+                    let hit = Hit { t, u, v, primitive, geometry, instance: NO_INSTANCE };
+                    t < ray.t_max && (!U::HAS_FILTER || user.accept(level_tag, &hit, ray))
+                })
             }
             Object::Instance { level, object_from_world, .. } => {
-                self.blocked |= level.occluded(&object_from_world.ray(self.ray), self.user);
+                level.occluded(&object_from_world.ray(ray), user)
             }
         }
     }
 }
 
-impl<U: UserShapes> VisitLeaf for AmongTriangles<'_, Any<'_, U>> {
-    #[inline(always)]
-    fn visit(&mut self, first: usize, count: usize) -> Leaf {
-        for block in &self.0.world.blocks[first..first + count] {
-            let (sheared, t_max) = (self.0.sheared, self.0.ray.t_max);
-            triangle::intersect(block, &sheared, t_max, |hit| self.0.found(block.hit(&hit)));
-        }
-        self.0.verdict()
-    }
-}
+impl<U: UserShapes> VisitLeaf for AnyObject<'_, U> {
+    const ANY: bool = true;
 
-impl<U: UserShapes> VisitLeaf for AmongObjects<'_, Any<'_, U>> {
     #[inline(always)]
-    fn visit(&mut self, first: usize, count: usize) -> Leaf {
-        for object in &self.0.world.objects[first..first + count] {
-            self.0.object(object);
-        }
-        self.0.verdict()
+    fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf {
+        self.blocked = self.world.objects[first..first + count].iter().any(|object| self.object(object));
+        if self.blocked { Leaf::Stop } else { Leaf::Continue(self.ray.t_max) }
     }
 }

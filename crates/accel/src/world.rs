@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use aureole_math::{Bounds3, Point3, Ray, Transform};
+use rayon::prelude::*;
 
 use crate::bvh::{Bvh8, Stats, build};
 use crate::triangle::{Block, LANES};
-use crate::{AccelError, Config, Geometry, Hit, Structure, UserShapes, query, simd};
+use crate::{AccelError, Accuracy, Config, Geometry, Hit, Structure, UserShapes, query};
 
 /// Something that is not a triangle.
 #[derive(Clone, Debug)]
@@ -22,9 +23,12 @@ pub struct World {
     bounds: Bounds3,
     pub(crate) triangles: Bvh8,
     pub(crate) blocks: Vec<Block>,
+    /// For each mesh, the number of its first triangle and its geometry.
+    meshes: Vec<[u32; 2]>,
     pub(crate) objects_bvh: Bvh8,
     pub(crate) objects: Vec<Object>,
     pub(crate) structure: Structure,
+    pub(crate) accuracy: Accuracy,
 }
 
 impl World {
@@ -38,9 +42,11 @@ impl World {
             bounds: Bounds3::EMPTY,
             triangles: Bvh8::default(),
             blocks: Vec::new(),
+            meshes: Vec::new(),
             objects_bvh: Bvh8::default(),
             objects: Vec::new(),
             structure: config.structure,
+            accuracy: config.accuracy,
         };
         world.build_triangles(&geometries, config)?;
         world.build_objects(geometries, config)?;
@@ -48,38 +54,32 @@ impl World {
     }
 
     fn build_triangles(&mut self, geometries: &[Geometry], config: &Config) -> Result<(), AccelError> {
-        let mut ids: Vec<[u32; 2]> = Vec::new();
-        let mut boxes = Vec::new();
+        let mut vertices = Vec::new();
         for (g, geometry) in geometries.iter().enumerate() {
             let Geometry::Triangles { positions, indices } = geometry else { continue };
             check_mesh(g, positions, indices)?;
-            boxes.extend(
-                indices.iter().map(|t| Bounds3::around(t.map(|i| Point3::from(positions[i as usize])))),
-            );
-            ids.extend((0..indices.len() as u32).map(|p| [g as u32, p]));
+            check_count(vertices.len() + indices.len())?;
+            self.meshes.push([vertices.len() as u32, g as u32]);
+            vertices.extend(indices.iter().map(|t| t.map(|i| positions[i as usize])));
         }
-        check_count(boxes.len())?;
+        let boxes: Vec<Bounds3> =
+            vertices.iter().map(|t: &[[f32; 3]; 3]| Bounds3::around(t.map(Point3::from))).collect();
         self.bounds = boxes.iter().fold(self.bounds, |b, other| b.union(*other));
-        let mut blocks = Vec::new();
-        let vertices = |[g, p]: [u32; 2]| match &geometries[g as usize] {
-            Geometry::Triangles { positions, indices } => indices[p as usize].map(|i| positions[i as usize]),
-            _ => [[f32::NAN; 3]; 3],
-        };
-        let mut pack = |items: &[u32]| {
-            let first = blocks.len() as u32;
-            for group in items.chunks(LANES) {
-                let mut block = Block::EMPTY;
-                for (lane, &item) in group.iter().enumerate() {
-                    let id = ids[item as usize];
-                    block.set(lane, vertices(id), id[0], id[1]);
-                }
-                blocks.push(block);
-            }
-            (first, blocks.len() as u32 - first)
-        };
-        self.triangles = build(&boxes, config, &mut pack, size_of::<Block>() / LANES);
-        self.blocks = blocks;
+        let built = build(&boxes, LANES, config);
+        let groups = built.leaves.par_iter().flat_map_iter(|&[first, count]| {
+            built.order[first as usize..(first + count) as usize].chunks(LANES)
+        });
+        self.blocks = groups.map(|ids| Block::new(config.accuracy, &vertices, ids)).collect();
+        self.triangles = built.bvh;
+        self.triangles.stats.bytes = size_of_val(&self.triangles.nodes[..]) + size_of_val(&self.blocks[..]);
         Ok(())
+    }
+
+    /// The geometry and the number in it of a triangle of this level.
+    pub(crate) fn triangle_of(&self, id: u32) -> (u32, u32) {
+        let mesh = self.meshes.partition_point(|[first, _]| *first <= id) - 1;
+        let [first, geometry] = self.meshes[mesh];
+        (geometry, id - first)
     }
 
     fn build_objects(&mut self, geometries: Vec<Geometry>, config: &Config) -> Result<(), AccelError> {
@@ -116,15 +116,11 @@ impl World {
         }
         check_count(boxes.len())?;
         self.bounds = boxes.iter().fold(self.bounds, |b, other| b.union(*other));
-        let mut order = Vec::new();
-        let mut pack = |items: &[u32]| {
-            let first = order.len() as u32;
-            order.extend_from_slice(items);
-            (first, items.len() as u32)
-        };
-        let config = Config { max_leaf_size: 2, ..*config };
-        self.objects_bvh = build(&boxes, &config, &mut pack, size_of::<Object>());
-        self.objects = order.into_iter().map(|i| all[i as usize].clone()).collect();
+        let built = build(&boxes, 1, config);
+        self.objects = built.order.iter().map(|&i| all[i as usize].clone()).collect();
+        self.objects_bvh = built.bvh;
+        self.objects_bvh.stats.bytes =
+            size_of_val(&self.objects_bvh.nodes[..]) + size_of_val(&self.objects[..]);
         Ok(())
     }
 
@@ -141,25 +137,25 @@ impl World {
     /// The nearest hit of a ray in `(t_min, t_max)`.
     pub fn closest_hit<U: UserShapes>(&self, ray: &Ray, user: &U) -> Option<Hit> {
         let mut hit = [Hit::NONE];
-        self.closest_hits(std::slice::from_ref(ray), &mut hit, user);
+        query::closest_hits(self, std::slice::from_ref(ray), &mut hit, user);
         hit[0].is_some().then_some(hit[0])
     }
 
     /// Whether anything lies on the ray in `(t_min, t_max)`.
     pub fn occluded<U: UserShapes>(&self, ray: &Ray, user: &U) -> bool {
         let mut blocked = [false];
-        self.occluded_many(std::slice::from_ref(ray), &mut blocked, user);
+        query::occluded(self, std::slice::from_ref(ray), &mut blocked, user);
         blocked[0]
     }
 
     /// [`closest_hit`](Self::closest_hit) for many rays; [`Hit::NONE`] where there is none.
     pub fn closest_hits<U: UserShapes>(&self, rays: &[Ray], hits: &mut [Hit], user: &U) {
-        simd::run(query::Closest { world: self, rays, hits, user });
+        query::closest_hits(self, rays, hits, user);
     }
 
     /// [`occluded`](Self::occluded) for many rays.
     pub fn occluded_many<U: UserShapes>(&self, rays: &[Ray], blocked: &mut [bool], user: &U) {
-        simd::run(query::Occluded { world: self, rays, blocked, user });
+        query::occluded(self, rays, blocked, user);
     }
 }
 

@@ -1,10 +1,13 @@
 //! Bounding-volume hierarchies over boxes.
 
+mod binned;
 mod build;
+mod collapse;
 mod node;
 mod traverse;
+mod tree;
 
-pub(crate) use build::build;
+pub(crate) use build::{Built, build};
 pub(crate) use node::Bvh8;
 pub use node::Stats;
-pub(crate) use traverse::{Leaf, Stack, TraversalRay, VisitLeaf};
+pub(crate) use traverse::{Leaf, VisitLeaf};

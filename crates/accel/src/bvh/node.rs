@@ -2,10 +2,8 @@
 
 /// Children per node.
 pub(crate) const WIDTH: usize = 8;
-/// Levels of the builder's binary tree that may be cut anywhere; below them lists are halved.
-pub(crate) const FREE_LEVELS: usize = 40;
-/// Levels of the deepest tree: a list of 2²⁷ items, more than there may be, is halved 27 times.
-pub(crate) const MAX_LEVELS: usize = FREE_LEVELS + 27;
+/// Levels of the deepest tree.
+pub(crate) const MAX_LEVELS: usize = 128;
 /// Marks a leaf in a child's reference.
 pub(crate) const LEAF: u32 = 1 << 31;
 /// Bits of a leaf's reference that count its items.

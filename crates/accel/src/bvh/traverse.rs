@@ -1,73 +1,70 @@
 //! Walking the hierarchy, nearest children first.
 
-use aureole_math::{Ray, Vector3, gamma};
+use arrayvec::ArrayVec;
+use aureole_math::{Ray, gamma};
 
-use crate::simd::{Avx2, Slabs};
+use crate::simd::{Floats, Mask, Simd, splat3};
 
 use super::node::{Bvh8, COUNT_BITS, LEAF, MAX_LEVELS, Node, WIDTH};
 
-/// Children left for later and where the ray enters them: at most seven a level.
-///
-/// Kept from ray to ray: clearing it would cost more than many a walk.
-pub(crate) struct Stack([(u32, f32); STACK]);
+/// Children left for later, at most seven a level: where the ray enters the child in the upper half (the bits of a number
+/// that is not negative, which sort like the number) and its reference in the lower.
+type Stack = ArrayVec<u64, { (WIDTH - 1) * MAX_LEVELS + WIDTH }>;
 
-const STACK: usize = (WIDTH - 1) * MAX_LEVELS + WIDTH;
-
-impl Default for Stack {
-    fn default() -> Self {
-        Self([(0, 0.0); STACK])
-    }
-}
-
-/// A ray made ready for the box test.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TraversalRay {
-    origin: [f32; 3],
-    inv: [f32; 3],
+/// A ray made ready for the box test: a plane at `p` is met at `p · inv - offset`, the near planes a little too early and
+/// the far ones a little too late, so that rounding loses nothing.
+#[derive(Clone, Copy)]
+pub(crate) struct TraversalRay<S: Simd> {
     /// Which side of each axis's slabs is entered first.
     near: [usize; 3],
-    t_min: f32,
-    avx2: Option<Avx2>,
+    near_inv: [S::F8; 3],
+    near_offset: [S::F8; 3],
+    far_inv: [S::F8; 3],
+    far_offset: [S::F8; 3],
+    t_min: S::F8,
 }
 
-impl TraversalRay {
+/// The rounding of `p · inv - offset` relative to its result, of both planes together.
+const RELATIVE: f32 = 1.0 + 4.0 * gamma(2);
+/// The rounding of `o · inv` relative to it.
+const ABSOLUTE: f32 = 2.0 * gamma(2);
+
+impl<S: Simd> TraversalRay<S> {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
         // A zero component would make 0 · ∞ = NaN of planes through the origin; a huge reciprocal does not.
-        let safe = |d: f32| if d.abs() < 1e-30 { 1e-30_f32.copysign(d) } else { d };
-        let d = ray.direction;
-        let inv = Vector3::new(1.0 / safe(d.x), 1.0 / safe(d.y), 1.0 / safe(d.z)).to_array();
+        let inv =
+            ray.direction.to_array().map(|d| if d.abs() < 1e-18 { 1e18_f32.copysign(d) } else { 1.0 / d });
+        let o = ray.origin.to_array();
+        let offset = [o[0] * inv[0], o[1] * inv[1], o[2] * inv[2]];
         Self {
-            origin: ray.origin.to_array(),
-            inv,
             near: inv.map(|x| usize::from(x.is_sign_negative())),
-            t_min: ray.t_min,
-            avx2: Avx2::detect(),
+            near_inv: splat3(inv),
+            near_offset: splat3(offset.map(|x| x + x.abs() * ABSOLUTE)),
+            far_inv: splat3(inv.map(|x| x * RELATIVE)),
+            far_offset: splat3(offset.map(|x| (x - x.abs() * ABSOLUTE) * RELATIVE)),
+            t_min: S::F8::splat(ray.t_min),
         }
+    }
+
+    /// Where the ray enters each of the eight boxes, and a bit for each that it meets before `t_max`.
+    #[inline(always)]
+    fn intersect(&self, node: &Node, t_max: f32) -> (S::F8, u32) {
+        let (mut enter, mut leave) = (self.t_min, S::F8::splat(t_max));
+        for axis in 0..3 {
+            let near = S::F8::load(&node.planes[axis][self.near[axis]]);
+            let far = S::F8::load(&node.planes[axis][self.near[axis] ^ 1]);
+            // In this order, a NaN decides nothing.
+            enter = near.mul_sub(self.near_inv[axis], self.near_offset[axis]).max(enter);
+            leave = far.mul_sub(self.far_inv[axis], self.far_offset[axis]).min(leave);
+        }
+        (enter, enter.less_or_equal(leave).bits())
     }
 }
 
 /// How far behind the best hit boxes are still opened: where a ray enters a box and where it meets a triangle in it are
 /// rounded differently, and of equally near hits the one with the smallest number must be found.
 const TIE_SCALE: f32 = 1.0 + 1e-5;
-/// Makes the far side reach as far as rounding could have taken it back [Ize 2013].
-const FAR_SCALE: f32 = 1.0 + 2.0 * gamma(3);
-
-/// Where the ray enters each of the eight boxes, and a bit for each that it meets before `t_max`.
-#[inline(always)]
-fn intersect_boxes(node: &Node, ray: &TraversalRay, t_max: f32) -> ([f32; WIDTH], u32) {
-    let side = |axis: usize, far: usize| &node.planes[axis][ray.near[axis] ^ far];
-    let slabs = Slabs {
-        near: [side(0, 0), side(1, 0), side(2, 0)],
-        far: [side(0, 1), side(1, 1), side(2, 1)],
-        o: ray.origin,
-        inv: ray.inv,
-        far_scale: FAR_SCALE,
-        t_min: ray.t_min,
-        t_max: t_max * TIE_SCALE,
-    };
-    slabs.test(ray.avx2)
-}
 
 /// What a leaf says after it was tested.
 pub(crate) enum Leaf {
@@ -79,67 +76,85 @@ pub(crate) enum Leaf {
 
 /// Tests leaves. A trait rather than a closure, so that it can insist on being compiled into the walk.
 pub(crate) trait VisitLeaf {
+    /// Whether any hit will do: then the order does not matter.
+    const ANY: bool;
+
     /// Tests the packed things from `first` on.
-    fn visit(&mut self, first: usize, count: usize) -> Leaf;
+    fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf;
 }
 
 impl Bvh8 {
     /// Visits the leaves that a ray may meet, nearest first, with their first item and number of items.
     #[inline(always)]
-    pub(crate) fn walk(
-        &self,
-        ray: &TraversalRay,
-        mut t_max: f32,
-        stack: &mut Stack,
-        visitor: &mut impl VisitLeaf,
-    ) {
+    pub(crate) fn walk<S: Simd>(&self, ray: &Ray, t_max: f32, visitor: &mut impl VisitLeaf) {
         if self.nodes.is_empty() || t_max.is_nan() {
             return;
         }
-        let stack = &mut stack.0;
-        let mut top = 0;
-        let mut current = 0_u32;
+        let ray = TraversalRay::<S>::new(ray);
+        let mut t_max = t_max * TIE_SCALE;
+        let mut stack = Stack::new();
+        let mut current = 0;
         loop {
-            if current & LEAF != 0 {
-                let first = (current & !LEAF) >> COUNT_BITS;
-                match visitor.visit(first as usize, (current & ((1 << COUNT_BITS) - 1)) as usize) {
-                    Leaf::Continue(t) => t_max = t,
-                    Leaf::Stop => return,
+            if current & LEAF == 0 {
+                let node = &self.nodes[current as usize];
+                let (enter, mask) = ray.intersect(node, t_max);
+                if mask != 0 {
+                    current = descend::<S>(node, enter, mask, &mut stack);
+                    continue;
                 }
             } else {
-                let node = &self.nodes[current as usize];
-                let (enter, mut mask) = intersect_boxes(node, ray, t_max);
-                if mask != 0 {
-                    // The nearest child next, the others onto the stack, farthest first.
-                    let start = top;
-                    while mask != 0 {
-                        let i = mask.trailing_zeros() as usize;
-                        mask &= mask - 1;
-                        let entry = (node.children[i], enter[i]);
-                        let mut at = top;
-                        while at > start && stack[at - 1].1 < entry.1 {
-                            stack[at] = stack[at - 1];
-                            at -= 1;
-                        }
-                        stack[at] = entry;
-                        top += 1;
-                    }
-                    top -= 1;
-                    current = stack[top].0;
-                    continue;
+                let first = (current & !LEAF) >> COUNT_BITS;
+                match visitor.visit::<S>(first as usize, (current & ((1 << COUNT_BITS) - 1)) as usize) {
+                    Leaf::Continue(t) => t_max = t * TIE_SCALE,
+                    Leaf::Stop => return,
                 }
             }
             // What lies behind the hit found meanwhile is skipped; equally far things may still win by number.
             loop {
-                if top == 0 {
-                    return;
-                }
-                top -= 1;
-                if stack[top].1 <= t_max * TIE_SCALE {
-                    current = stack[top].0;
+                let Some(entry) = stack.pop() else { return };
+                if f32::from_bits((entry >> 32) as u32) <= t_max {
+                    current = entry as u32;
                     break;
                 }
             }
         }
     }
+}
+
+/// The nearest child that the ray meets; the others go onto the stack, farthest first.
+#[inline(always)]
+fn descend<S: Simd>(node: &Node, enter: S::F8, mut mask: u32, stack: &mut Stack) -> u32 {
+    let enter = enter.to_array();
+    let mut next = || {
+        let i = mask.trailing_zeros() as usize % WIDTH;
+        mask &= mask - 1;
+        (u64::from(enter[i].to_bits()) << 32 | u64::from(node.children[i]), mask)
+    };
+    let (a, rest) = next();
+    if rest == 0 {
+        return a as u32;
+    }
+    let (b, mut rest) = next();
+    let (mut nearest, far) = (a.min(b), a.max(b));
+    if rest == 0 {
+        stack.push(far);
+        return nearest as u32;
+    }
+    let start = stack.len();
+    stack.push(far);
+    while rest != 0 {
+        let (c, r) = next();
+        rest = r;
+        let (near, far) = (nearest.min(c), nearest.max(c));
+        nearest = near;
+        // Insert `far`.
+        let mut at = stack.len();
+        stack.push(far);
+        while at > start && stack[at - 1] < far {
+            stack[at] = stack[at - 1];
+            at -= 1;
+        }
+        stack[at] = far;
+    }
+    nearest as u32
 }

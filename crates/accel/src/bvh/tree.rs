@@ -1,0 +1,131 @@
+//! The binary tree that all builders make and the collapse turns into nodes.
+
+use aureole_math::{Bounds3, Point3};
+use glam::Vec4;
+
+/// Marks a leaf.
+const LEAF: u32 = 1 << 31;
+/// Levels of the binary tree that may be cut anywhere; below them lists are halved, since a hostile input could make a tree
+/// as deep as it is long.
+pub(crate) const FREE_LEVELS: usize = 40;
+
+/// The box of a primitive on its way through a builder. The fourth lane of `max` carries the bits of its number.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(crate) struct Item {
+    pub min: Vec4,
+    max: Vec4,
+}
+
+impl Item {
+    pub(crate) fn new(bounds: &Bounds3, index: u32) -> Self {
+        let (min, max) = (bounds.min, bounds.max);
+        Self {
+            min: Vec4::new(min.x, min.y, min.z, 0.0),
+            max: Vec4::new(max.x, max.y, max.z, f32::from_bits(index)),
+        }
+    }
+
+    pub(crate) fn index(&self) -> u32 {
+        self.max.w.to_bits()
+    }
+
+    /// Twice the centroid; the fourth lane means nothing.
+    #[inline(always)]
+    pub(crate) fn center(&self) -> Vec4 {
+        self.min + self.max
+    }
+
+    pub(crate) fn bounds(&self) -> Extent {
+        Extent { min: self.min, max: self.max }
+    }
+}
+
+/// A box in registers; the fourth lanes mean nothing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extent {
+    pub min: Vec4,
+    pub max: Vec4,
+}
+
+impl Extent {
+    pub(crate) const EMPTY: Self = Self { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY };
+
+    #[inline(always)]
+    pub(crate) fn union(&self, other: &Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    #[inline(always)]
+    pub(crate) fn with(&self, point: Vec4) -> Self {
+        Self { min: self.min.min(point), max: self.max.max(point) }
+    }
+
+    /// Half the surface; zero for the empty box.
+    #[inline(always)]
+    pub(crate) fn half_area(&self) -> f32 {
+        let d = (self.max - self.min).max(Vec4::ZERO);
+        d.x * (d.y + d.z) + d.y * d.z
+    }
+
+    pub(crate) fn bounds(&self) -> Bounds3 {
+        Bounds3 {
+            min: Point3::new(self.min.x, self.min.y, self.min.z),
+            max: Point3::new(self.max.x, self.max.y, self.max.z),
+        }
+    }
+}
+
+/// A node of a binary tree.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BinaryNode {
+    pub bounds: Bounds3,
+    /// The children, or the first item and the number of items with [`LEAF`].
+    links: [u32; 2],
+}
+
+/// What is below a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Below {
+    /// Two nodes.
+    Nodes(usize, usize),
+    /// Items of the tree's order.
+    Items { first: usize, count: usize },
+}
+
+impl BinaryNode {
+    pub(crate) const EMPTY: Self = Self { bounds: Bounds3::EMPTY, links: [0, LEAF] };
+
+    pub(crate) fn inner(bounds: Bounds3, left: usize, right: usize) -> Self {
+        Self { bounds, links: [left as u32, right as u32] }
+    }
+
+    pub(crate) fn leaf(bounds: Bounds3, first: usize, count: usize) -> Self {
+        Self { bounds, links: [first as u32, count as u32 | LEAF] }
+    }
+
+    #[inline]
+    pub(crate) fn below(&self) -> Below {
+        let [a, b] = self.links.map(|link| link as usize);
+        if self.links[1] & LEAF == 0 {
+            Below::Nodes(a, b)
+        } else {
+            Below::Items { first: a, count: b & !(LEAF as usize) }
+        }
+    }
+
+    /// Half the surface.
+    #[inline]
+    pub(crate) fn half_area(&self) -> f32 {
+        let d = self.bounds.max - self.bounds.min;
+        d.x * (d.y + d.z) + d.y * d.z
+    }
+}
+
+/// A binary tree; the root is node 0. Not every node needs to be in use.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct BinaryTree {
+    pub nodes: Vec<BinaryNode>,
+    /// The primitives of the leaves.
+    pub order: Vec<u32>,
+}

@@ -1,0 +1,111 @@
+//! Plain arrays, for any machine.
+
+use std::ops::{Add, BitAnd, Div, Mul, Sub};
+
+use super::{Floats, Mask, Simd};
+
+/// No particular instruction set.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Portable;
+
+impl Simd for Portable {
+    type F4 = Lanes<4>;
+    type F8 = Lanes<8>;
+    type F16 = Lanes<16>;
+}
+
+#[derive(Clone, Copy, Debug)]
+#[repr(align(16))]
+pub(crate) struct Lanes<const N: usize>([f32; N]);
+
+impl<const N: usize> Lanes<N> {
+    #[inline(always)]
+    fn zip(self, other: Self, op: impl Fn(f32, f32) -> f32) -> Self {
+        Self(std::array::from_fn(|i| op(self.0[i], other.0[i])))
+    }
+
+    #[inline(always)]
+    fn compare(self, other: Self, op: impl Fn(&f32, &f32) -> bool) -> Bits {
+        Bits((0..N).fold(0, |bits, i| bits | u32::from(op(&self.0[i], &other.0[i])) << i))
+    }
+}
+
+macro_rules! operators {
+    ($($name:ident $method:ident $op:tt),*) => {$(
+        impl<const N: usize> $name for Lanes<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.zip(other, |a, b| a $op b)
+            }
+        }
+    )*};
+}
+operators!(Add add +, Sub sub -, Mul mul *, Div div /);
+
+impl<const N: usize> Floats<N> for Lanes<N> {
+    type Mask = Bits;
+
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        Self([x; N])
+    }
+
+    #[inline(always)]
+    fn load(from: &[f32; N]) -> Self {
+        Self(*from)
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f32; N] {
+        self.0
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f32::abs))
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        self * b - c
+    }
+
+    #[inline(always)]
+    fn less(self, other: Self) -> Bits {
+        self.compare(other, f32::lt)
+    }
+
+    #[inline(always)]
+    fn less_or_equal(self, other: Self) -> Bits {
+        self.compare(other, f32::le)
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bits(u32);
+
+impl BitAnd for Bits {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+}
+
+impl Mask for Bits {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        self.0
+    }
+}

@@ -1,0 +1,146 @@
+//! No ray slips through between triangles that share an edge or a corner.
+//!
+//! # References
+//! [Woop, Benthin and Wald 2013] "Watertight Ray/Triangle Intersection", JCGT 2(1).
+
+use aureole_math::{Ray, gamma};
+
+use super::{Block, BlockHits, LANES, TriangleTest};
+use crate::simd::{Floats, Mask, Simd, load3, splat3};
+
+/// A ray whose largest axis becomes z, sheared so that it points along it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Watertight {
+    axes: [usize; 3],
+    shear: [f32; 3],
+    origin: [f32; 3],
+    t_min: f32,
+}
+
+impl TriangleTest for Watertight {
+    fn prepare(vertices: [[f32; 3]; 3]) -> [[f32; 3]; 3] {
+        vertices
+    }
+
+    #[inline(always)]
+    fn new(ray: &Ray) -> Self {
+        let d = ray.direction;
+        let z = d.abs().max_axis();
+        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
+        // Keep the winding of triangles.
+        if d[z] < 0.0 {
+            std::mem::swap(&mut x, &mut y);
+        }
+        let shear = [d[x] / d[z], d[y] / d[z], 1.0 / d[z]];
+        let o = ray.origin;
+        Self { axes: [x, y, z], shear, origin: [o[x], o[y], o[z]], t_min: ray.t_min }
+    }
+
+    #[inline(always)]
+    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> BlockHits {
+        let shear = splat3::<LANES, S::F4>(self.shear);
+        let origin = splat3::<LANES, S::F4>(self.origin);
+        // Vertices relative to the origin, sheared.
+        let [x0, y0, z0] = self.relative(&block.corners[0], shear, origin);
+        let [x1, y1, z1] = self.relative(&block.corners[1], shear, origin);
+        let [x2, y2, z2] = self.relative(&block.corners[2], shear, origin);
+        // Twice the signed areas between the ray and each edge; outside where their signs differ.
+        let (u, v, w) = (x2 * y1 - y2 * x1, x0 * y2 - y0 * x2, x1 * y0 - y1 * x0);
+        let zero = S::F4::splat(0.0);
+        let mut inside = same_signs(u, v, w);
+        if inside == 0 {
+            return BlockHits::NONE;
+        }
+        let mut edges = [u, v, w];
+        if u.abs().min(v.abs()).min(w.abs()).less_or_equal(zero).bits() & inside != 0 {
+            let exact = exact_edges(
+                [x0.to_array(), x1.to_array(), x2.to_array()],
+                [y0.to_array(), y1.to_array(), y2.to_array()],
+                [u.to_array(), v.to_array(), w.to_array()],
+            );
+            edges = load3(&exact);
+            inside &= same_signs(edges[0], edges[1], edges[2]);
+        }
+        let [u, v, w] = edges;
+        let det = u + v + w;
+        let inv = S::F4::splat(1.0) / det;
+        let z = [shear[2] * z0, shear[2] * z1, shear[2] * z2];
+        let t = (u * z[0] + v * z[1] + w * z[2]) * inv;
+        // A vanishing determinant makes t infinite or NaN, which is in no range.
+        let in_range = S::F4::splat(self.t_min).less(t) & t.less_or_equal(S::F4::splat(t_max));
+        inside &= in_range.bits();
+        if inside == 0 {
+            return BlockHits::NONE;
+        }
+        let bound = error_bound(edges, [x0, x1, x2], [y0, y1, y2], z, inv);
+        inside &= bound.less(t).bits();
+        BlockHits { mask: inside, t: t.to_array(), u: (v * inv).to_array(), v: (w * inv).to_array() }
+    }
+}
+
+impl Watertight {
+    /// Corners relative to the ray's origin, sheared (z not yet scaled).
+    #[inline(always)]
+    fn relative<F: Floats<LANES>>(
+        &self,
+        corner: &[[f32; LANES]; 3],
+        shear: [F; 3],
+        origin: [F; 3],
+    ) -> [F; 3] {
+        let [kx, ky, kz] = self.axes;
+        let z = F::load(&corner[kz]) - origin[2];
+        let x = (F::load(&corner[kx]) - origin[0]) - shear[0] * z;
+        let y = (F::load(&corner[ky]) - origin[1]) - shear[1] * z;
+        [x, y, z]
+    }
+}
+
+/// A bit for each lane in which three numbers have one sign, zero counting as either.
+#[inline(always)]
+fn same_signs<F: Floats<LANES>>(u: F, v: F, w: F) -> u32 {
+    let zero = F::splat(0.0);
+    let (least, largest) = (u.min(v).min(w), u.max(v).max(w));
+    zero.less_or_equal(least).bits() | largest.less_or_equal(zero).bits()
+}
+
+/// Where a ray is on an edge to within rounding, the edge functions in double precision, in which they are exact in sign.
+#[cold]
+#[inline(never)]
+fn exact_edges(
+    x: [[f32; LANES]; 3],
+    y: [[f32; LANES]; 3],
+    mut edges: [[f32; LANES]; 3],
+) -> [[f32; LANES]; 3] {
+    for i in 0..LANES {
+        if edges.iter().all(|e| e[i] != 0.0) {
+            continue;
+        }
+        let edge = |a: usize, b: usize| {
+            (f64::from(x[a][i]) * f64::from(y[b][i]) - f64::from(y[a][i]) * f64::from(x[b][i])) as f32
+        };
+        let exact = [edge(2, 1), edge(0, 2), edge(1, 0)];
+        for (e, exact) in edges.iter_mut().zip(exact) {
+            e[i] = exact;
+        }
+    }
+    edges
+}
+
+/// How large the ray parameter of a point on the triangle's plane may come out by rounding alone: a ray that starts on
+/// the triangle must not hit it again.
+///
+/// # References
+/// [PBRT4] section 6.8.7, for sheared vertices and edge functions.
+#[inline(always)]
+fn error_bound<F: Floats<LANES>>(edges: [F; 3], x: [F; 3], y: [F; 3], z: [F; 3], inv_det: F) -> F {
+    let (x, y, z, e) = (largest(x), largest(y), largest(z), largest(edges));
+    let [g2, g3, g5] = [F::splat(gamma(2)), F::splat(gamma(3)), F::splat(gamma(5))];
+    let (dz, dx, dy) = (g3 * z, g5 * (x + z), g5 * (y + z));
+    let de = F::splat(2.0) * (g2 * x * y + dy * x + dx * y);
+    F::splat(3.0) * (g3 * e * z + de * z + dz * e) * inv_det.abs()
+}
+
+#[inline(always)]
+fn largest<F: Floats<LANES>>(values: [F; 3]) -> F {
+    values[0].abs().max(values[1].abs()).max(values[2].abs())
+}
