@@ -16,6 +16,7 @@
 //! # Ok::<(), aureole_accel::AccelError>(())
 //! ```
 
+mod big;
 mod bvh;
 mod config;
 mod error;

@@ -99,7 +99,7 @@ fn walk<S: Simd>(
         Structure::List => {
             visitor.visit::<S>(0, count);
         }
-        Structure::Hierarchy => bvh.walk::<S>(ray, t_max, visitor),
+        Structure::Hierarchy => bvh.walk::<S, _>(ray, t_max, visitor),
     }
 }
 

@@ -7,6 +7,7 @@ pub(crate) use fast::Fast;
 pub(crate) use watertight::Watertight;
 
 use aureole_math::Ray;
+use bytemuck::{Pod, Zeroable};
 
 use crate::Accuracy;
 use crate::simd::Simd;
@@ -15,7 +16,7 @@ use crate::simd::Simd;
 pub(crate) const LANES: usize = 4;
 
 /// Triangles side by side. Unused lanes hold NaN, which nothing hits.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub(crate) struct Block {
     /// `corners[vector][axis][lane]`; the kind of test says which three vectors it wants.
@@ -28,10 +29,10 @@ impl Block {
     const EMPTY: Self = Self { corners: [[[f32::NAN; LANES]; 3]; 3], ids: [u32::MAX; LANES] };
 
     /// The triangles with these numbers, of which there are at most [`LANES`].
-    pub(crate) fn new(accuracy: Accuracy, triangles: &[[[f32; 3]; 3]], ids: &[u32]) -> Self {
+    pub(crate) fn new(accuracy: Accuracy, ids: &[u32], triangle: impl Fn(u32) -> [[f32; 3]; 3]) -> Self {
         let mut block = Self::EMPTY;
         for (lane, &id) in ids.iter().enumerate() {
-            let vertices = triangles[id as usize];
+            let vertices = triangle(id);
             let corners = match accuracy {
                 Accuracy::Watertight => Watertight::prepare(vertices),
                 Accuracy::Fast => Fast::prepare(vertices),

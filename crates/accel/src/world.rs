@@ -5,6 +5,7 @@ use std::sync::Arc;
 use aureole_math::{Bounds3, Point3, Ray, Transform};
 use rayon::prelude::*;
 
+use crate::big::Big;
 use crate::bvh::{Bvh8, Stats, build};
 use crate::triangle::{Block, LANES};
 use crate::{AccelError, Accuracy, Config, Geometry, Hit, Structure, UserShapes, query};
@@ -22,7 +23,7 @@ pub struct World {
     pub(crate) tag: u32,
     bounds: Bounds3,
     pub(crate) triangles: Bvh8,
-    pub(crate) blocks: Vec<Block>,
+    pub(crate) blocks: Big<Block>,
     /// For each mesh, the number of its first triangle and its geometry.
     meshes: Vec<[u32; 2]>,
     pub(crate) objects_bvh: Bvh8,
@@ -41,7 +42,7 @@ impl World {
             tag,
             bounds: Bounds3::EMPTY,
             triangles: Bvh8::default(),
-            blocks: Vec::new(),
+            blocks: Big::default(),
             meshes: Vec::new(),
             objects_bvh: Bvh8::default(),
             objects: Vec::new(),
@@ -54,24 +55,32 @@ impl World {
     }
 
     fn build_triangles(&mut self, geometries: &[Geometry], config: &Config) -> Result<(), AccelError> {
-        let mut vertices = Vec::new();
+        let mut meshes = Vec::new();
+        let mut count = 0;
         for (g, geometry) in geometries.iter().enumerate() {
             let Geometry::Triangles { positions, indices } = geometry else { continue };
             check_mesh(g, positions, indices)?;
-            check_count(vertices.len() + indices.len())?;
-            self.meshes.push([vertices.len() as u32, g as u32]);
-            vertices.extend(indices.iter().map(|t| t.map(|i| positions[i as usize])));
+            self.meshes.push([count as u32, g as u32]);
+            meshes.push((positions, indices));
+            count += indices.len();
+            check_count(count)?;
         }
-        let boxes: Vec<Bounds3> =
-            vertices.iter().map(|t: &[[f32; 3]; 3]| Bounds3::around(t.map(Point3::from))).collect();
-        self.bounds = boxes.iter().fold(self.bounds, |b, other| b.union(*other));
-        let built = build(&boxes, LANES, config);
-        let groups = built.leaves.par_iter().flat_map_iter(|&[first, count]| {
-            built.order[first as usize..(first + count) as usize].chunks(LANES)
+        let starts = &self.meshes;
+        let triangle = |id: u32| {
+            let mesh = starts.partition_point(|[first, _]| *first <= id) - 1;
+            let (positions, indices) = meshes[mesh];
+            indices[(id - starts[mesh][0]) as usize].map(|i| positions[i as usize])
+        };
+        let bounds = |id: u32| Bounds3::around(triangle(id).map(Point3::from));
+        let built = build(count, bounds, LANES, config);
+        self.blocks = Big::zeroed(built.groups.len());
+        self.blocks.par_iter_mut().zip(&built.groups).for_each(|(block, &[first, count])| {
+            let ids = &built.order[first as usize..(first + count) as usize];
+            *block = Block::new(config.accuracy, ids, triangle);
         });
-        self.blocks = groups.map(|ids| Block::new(config.accuracy, &vertices, ids)).collect();
         self.triangles = built.bvh;
         self.triangles.stats.bytes = size_of_val(&self.triangles.nodes[..]) + size_of_val(&self.blocks[..]);
+        self.bounds = self.bounds.union(self.triangles.bounds());
         Ok(())
     }
 
@@ -116,7 +125,7 @@ impl World {
         }
         check_count(boxes.len())?;
         self.bounds = boxes.iter().fold(self.bounds, |b, other| b.union(*other));
-        let built = build(&boxes, 1, config);
+        let built = build(boxes.len(), |i| boxes[i as usize], 1, config);
         self.objects = built.order.iter().map(|&i| all[i as usize].clone()).collect();
         self.objects_bvh = built.bvh;
         self.objects_bvh.stats.bytes =

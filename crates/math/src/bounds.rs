@@ -3,7 +3,7 @@
 use crate::{Point3, Ray, Vector3, gamma};
 
 /// An axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Bounds3 {
     /// Lower corner.

@@ -8,20 +8,27 @@ use super::collapse::{Costs, collapse};
 use super::node::Bvh8;
 use super::tree::Item;
 use crate::Config;
+use crate::big::Big;
 
 /// A hierarchy and what its owner must put into its leaves.
 pub(crate) struct Built {
     pub bvh: Bvh8,
     /// Primitives in the order of the leaves.
-    pub order: Vec<u32>,
-    /// For each leaf, in the order in which the references number packed things: the first in `order` and how many.
-    pub leaves: Vec<[u32; 2]>,
+    pub order: Big<u32>,
+    /// What is packed together, as the leaves' references count it: the first in `order` and how many.
+    pub groups: Vec<[u32; 2]>,
 }
 
 /// Builds a hierarchy over boxes, whose leaves hold groups of up to `lanes` primitives.
-pub(crate) fn build(boxes: &[Bounds3], lanes: usize, config: &Config) -> Built {
-    let items: Vec<Item> = boxes.par_iter().enumerate().map(|(i, b)| Item::new(b, i as u32)).collect();
-    let tree = binned::build(items, 1);
+pub(crate) fn build(
+    count: usize,
+    bounds: impl Fn(u32) -> Bounds3 + Sync,
+    lanes: usize,
+    config: &Config,
+) -> Built {
+    let mut items = Big::<Item>::zeroed(count);
+    items.par_iter_mut().zip(0..count as u32).for_each(|(item, i)| *item = Item::new(&bounds(i), i));
+    let tree = binned::build(items, lanes);
     let _ = config.quality;
-    collapse(&tree, &Costs::new(lanes))
+    collapse(tree, &Costs::new(lanes))
 }

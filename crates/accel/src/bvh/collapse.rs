@@ -3,9 +3,14 @@
 //! # References
 //! [Ylitie, Karras and Laine 2017] "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.
 
+use arrayvec::ArrayVec;
+use bytemuck::{Pod, Zeroable};
+use rayon::prelude::*;
+
 use super::build::Built;
 use super::node::{Bvh8, COUNT_BITS, LEAF, Node, Stats, WIDTH};
-use super::tree::{Below, BinaryTree};
+use super::tree::{Below, BinaryNode, BinaryTree};
+use crate::big::Big;
 
 /// What things cost, in visits of a node.
 pub(crate) struct Costs {
@@ -28,8 +33,12 @@ impl Costs {
     }
 }
 
+/// Items from which two threads pay.
+const PARALLEL: u32 = 1 << 14;
+
 /// Of a subtree of the binary tree.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
 struct Subtree {
     /// `cost[i]`: the least cost of standing for it by at most `i + 1` children of a wide node.
     cost: [f32; WIDTH - 1],
@@ -40,44 +49,51 @@ struct Subtree {
 }
 
 /// Chooses the nodes and leaves of the wide hierarchy.
-pub(crate) fn collapse(tree: &BinaryTree, costs: &Costs) -> Built {
-    let mut built = Built { bvh: Bvh8::default(), order: tree.order.clone(), leaves: Vec::new() };
-    let Some(root) = tree.nodes.first() else { return built };
-    let subtrees = evaluate(tree, costs);
-    built.bvh.nodes.push(Node::EMPTY);
-    let mut collapse = Collapse { tree, costs, subtrees: &subtrees, built: &mut built, groups: 0 };
-    collapse.fill(0, 0, 1);
-    let stats = &mut built.bvh.stats;
-    stats.nodes = built.bvh.nodes.len();
-    let scale = 1.0 / root.half_area().max(f32::MIN_POSITIVE);
-    stats.sah_cost *= scale;
-    built
+pub(crate) fn collapse(tree: BinaryTree, costs: &Costs) -> Built {
+    let mut part = Part::default();
+    if let Some(root) = tree.nodes.first() {
+        let mut subtrees = Big::<Subtree>::zeroed(tree.nodes.len());
+        evaluate(&tree.nodes, 0, costs, &mut subtrees);
+        part = Collapse { tree: &tree, costs, subtrees: &subtrees }.part(0);
+        part.stats.nodes = part.nodes.len();
+        part.stats.sah_cost /= root.half_area().max(f32::MIN_POSITIVE);
+    }
+    Built {
+        bvh: Bvh8 { nodes: part.nodes.into(), stats: part.stats },
+        order: tree.order,
+        groups: part.groups,
+    }
 }
 
-/// The subtrees of all nodes. Children come after their parents, so one pass from the end suffices.
-fn evaluate(tree: &BinaryTree, costs: &Costs) -> Vec<Subtree> {
-    let mut subtrees = vec![Subtree::default(); tree.nodes.len()];
-    for (i, node) in tree.nodes.iter().enumerate().rev() {
-        let area = node.half_area();
-        subtrees[i] = match node.below() {
-            Below::Items { first, count } => Subtree {
-                cost: [costs.leaf(area, count); WIDTH - 1],
-                first: first as u32,
-                count: count as u32,
-            },
-            Below::Nodes(left, right) => {
-                let (left, right) = (&subtrees[left], &subtrees[right]);
-                let count = left.count + right.count;
-                let mut cost = [0.0; WIDTH - 1];
-                cost[0] = costs.leaf(area, count as usize).min(area + cheapest_shares(left, right, WIDTH).0);
-                for children in 2..WIDTH {
-                    cost[children - 1] = cost[children - 2].min(cheapest_shares(left, right, children).0);
-                }
-                Subtree { cost, first: left.first, count }
+/// Evaluates the subtree of node `at` and all in it; `into` is for them alone.
+fn evaluate(nodes: &[BinaryNode], at: usize, costs: &Costs, into: &mut [Subtree]) {
+    let area = nodes[at].half_area();
+    let (top, rest) = into.split_at_mut(1);
+    top[0] = match nodes[at].below() {
+        Below::Items { first, count } => {
+            Subtree { cost: [costs.leaf(area, count); WIDTH - 1], first: first as u32, count: count as u32 }
+        }
+        Below::Nodes(left, right) => {
+            let (left_into, right_into) = rest.split_at_mut(right - left);
+            if left_into.len().min(right_into.len()) > PARALLEL as usize {
+                rayon::join(
+                    || evaluate(nodes, left, costs, left_into),
+                    || evaluate(nodes, right, costs, right_into),
+                );
+            } else {
+                evaluate(nodes, left, costs, left_into);
+                evaluate(nodes, right, costs, right_into);
             }
-        };
-    }
-    subtrees
+            let (left, right) = (&left_into[0], &right_into[0]);
+            let count = left.count + right.count;
+            let mut cost = [0.0; WIDTH - 1];
+            cost[0] = costs.leaf(area, count as usize).min(area + cheapest_shares(left, right, WIDTH).0);
+            for children in 2..WIDTH {
+                cost[children - 1] = cost[children - 2].min(cheapest_shares(left, right, children).0);
+            }
+            Subtree { cost, first: left.first, count }
+        }
+    };
 }
 
 /// The least cost of sharing out `children` children to two subtrees, and how many the left one gets.
@@ -93,50 +109,82 @@ fn cheapest_shares(left: &Subtree, right: &Subtree, children: usize) -> (f32, us
     best
 }
 
+/// A part of the wide hierarchy; its root is node 0, its leaves' groups are numbered from 0.
+#[derive(Default)]
+struct Part {
+    nodes: Vec<Node>,
+    groups: Vec<[u32; 2]>,
+    stats: Stats,
+}
+
+impl Part {
+    /// Takes in another part; the number of its root.
+    fn append(&mut self, other: Self) -> u32 {
+        let (nodes, groups) = (self.nodes.len() as u32, self.groups.len() as u32);
+        self.nodes.extend(other.nodes.into_iter().map(|node| node.moved(nodes, groups)));
+        self.groups.extend(other.groups);
+        self.stats = self.stats.merged(other.stats);
+        nodes
+    }
+}
+
 struct Collapse<'a> {
     tree: &'a BinaryTree,
     costs: &'a Costs,
     subtrees: &'a [Subtree],
-    built: &'a mut Built,
-    /// Groups of primitives handed out so far.
-    groups: usize,
 }
 
 impl Collapse<'_> {
-    /// Fills the wide node `index` with what is below a binary node.
-    fn fill(&mut self, index: usize, binary: usize, depth: usize) {
-        let area = self.tree.nodes[binary].half_area();
-        let stats = &mut self.built.bvh.stats;
-        stats.depth = stats.depth.max(depth);
-        stats.sah_cost += area;
-        let mut children = arrayvec::ArrayVec::<usize, WIDTH>::new();
+    /// The hierarchy below a binary node.
+    fn part(&self, binary: usize) -> Part {
+        let mut part = Part::default();
+        self.fill(binary, &mut part);
+        part
+    }
+
+    /// Appends the node for a binary node and what is below it.
+    fn fill(&self, binary: usize, part: &mut Part) {
+        let mut children = ArrayVec::<usize, WIDTH>::new();
         match self.tree.nodes[binary].below() {
             Below::Nodes(..) => self.gather(binary, WIDTH, &mut children),
             Below::Items { .. } => children.push(binary), // the whole tree is one leaf
         }
+        let mut node = Node::EMPTY;
         for (slot, &child) in children.iter().enumerate() {
-            let bounds = &self.tree.nodes[child].bounds;
-            for axis in 0..3 {
-                self.built.bvh.nodes[index].planes[axis][0][slot] = bounds.min[axis];
-                self.built.bvh.nodes[index].planes[axis][1][slot] = bounds.max[axis];
-            }
-            let subtree = &self.subtrees[child];
-            let leaf_cost = self.costs.leaf(self.tree.nodes[child].half_area(), subtree.count as usize);
-            let is_leaf =
-                matches!(self.tree.nodes[child].below(), Below::Items { .. }) || leaf_cost <= subtree.cost[0];
-            self.built.bvh.nodes[index].children[slot] = if is_leaf {
-                self.leaf(subtree, leaf_cost)
-            } else {
-                let next = self.built.bvh.nodes.len();
-                self.built.bvh.nodes.push(Node::EMPTY);
-                self.fill(next, child, depth + 1);
-                next as u32
-            };
+            node.set_bounds(slot, &self.tree.nodes[child].bounds);
         }
+        let index = part.nodes.len();
+        part.nodes.push(node);
+        part.stats.sah_cost += self.tree.nodes[binary].half_area();
+        // The parts of large subtrees come from many threads.
+        let parallel = self.subtrees[binary].count > PARALLEL;
+        let parts: Vec<Option<Part>> = if parallel {
+            let large = |&child: &usize| self.subtrees[child].count > PARALLEL;
+            children.par_iter().map(|child| large(child).then(|| self.part(*child))).collect()
+        } else {
+            Vec::new()
+        };
+        let mut parts = parts.into_iter();
+        let mut deepest = 0;
+        for (slot, &child) in children.iter().enumerate() {
+            let outer = std::mem::take(&mut part.stats.depth);
+            part.nodes[index].children[slot] = match (self.leaf(child), parts.next().flatten()) {
+                (Some(cost), _) => self.add_leaf(child, cost, part),
+                (None, Some(other)) => part.append(other),
+                (None, None) => {
+                    let next = part.nodes.len() as u32;
+                    self.fill(child, part);
+                    next
+                }
+            };
+            deepest = part.stats.depth.max(deepest);
+            part.stats.depth = outer;
+        }
+        part.stats.depth = deepest + 1;
     }
 
     /// The binary nodes that become the children, at most `children` of them.
-    fn gather(&self, binary: usize, children: usize, into: &mut arrayvec::ArrayVec<usize, WIDTH>) {
+    fn gather(&self, binary: usize, children: usize, into: &mut ArrayVec<usize, WIDTH>) {
         let Below::Nodes(left, right) = self.tree.nodes[binary].below() else {
             into.push(binary);
             return;
@@ -151,15 +199,21 @@ impl Collapse<'_> {
         }
     }
 
-    fn leaf(&mut self, subtree: &Subtree, cost: f32) -> u32 {
-        let groups = (subtree.count as usize).div_ceil(self.costs.lanes);
-        let stats = &mut self.built.bvh.stats;
-        stats.leaves += 1;
-        stats.primitives += subtree.count as usize;
-        stats.sah_cost += cost;
-        self.built.leaves.push([subtree.first, subtree.count]);
-        let place = self.groups as u32;
-        self.groups += groups;
-        LEAF | place << COUNT_BITS | groups as u32
+    /// The cost of a child as a leaf, if it is to be one.
+    fn leaf(&self, child: usize) -> Option<f32> {
+        let (node, subtree) = (&self.tree.nodes[child], &self.subtrees[child]);
+        let cost = self.costs.leaf(node.half_area(), subtree.count as usize);
+        (matches!(node.below(), Below::Items { .. }) || cost <= subtree.cost[0]).then_some(cost)
+    }
+
+    fn add_leaf(&self, child: usize, cost: f32, part: &mut Part) -> u32 {
+        let Subtree { first, count, .. } = self.subtrees[child];
+        part.stats.leaves += 1;
+        part.stats.primitives += count as usize;
+        part.stats.sah_cost += cost;
+        let place = part.groups.len() as u32;
+        let (end, lanes) = (first + count, self.costs.lanes);
+        part.groups.extend((first..end).step_by(lanes).map(|i| [i, (end - i).min(lanes as u32)]));
+        LEAF | place << COUNT_BITS | part.groups.len() as u32 - place
     }
 }

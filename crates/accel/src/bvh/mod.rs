@@ -7,7 +7,7 @@ mod node;
 mod traverse;
 mod tree;
 
-pub(crate) use build::{Built, build};
+pub(crate) use build::build;
 pub(crate) use node::Bvh8;
 pub use node::Stats;
 pub(crate) use traverse::{Leaf, VisitLeaf};

@@ -1,5 +1,10 @@
 //! The layout: nodes of eight children, each axis's planes side by side.
 
+use aureole_math::{Bounds3, Point3};
+use bytemuck::{Pod, Zeroable};
+
+use crate::big::Big;
+
 /// Children per node.
 pub(crate) const WIDTH: usize = 8;
 /// Levels of the deepest tree.
@@ -10,25 +15,63 @@ pub(crate) const LEAF: u32 = 1 << 31;
 pub(crate) const COUNT_BITS: u32 = 4;
 
 /// Eight boxes and what is inside them. An empty slot has a box that no ray meets.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
     /// `planes[axis][side]`: side 0 the lower, 1 the upper planes of the eight boxes.
     pub planes: [[[f32; WIDTH]; 2]; 3],
     /// A node's index, or a leaf: [`LEAF`], first item, number of items.
     pub children: [u32; WIDTH],
+    /// Makes four cache lines full.
+    unused: [u32; WIDTH],
 }
 
 impl Node {
-    pub(crate) const EMPTY: Self =
-        Self { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3], children: [LEAF; WIDTH] };
+    pub(crate) const EMPTY: Self = Self {
+        planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
+        children: [LEAF; WIDTH],
+        unused: [0; WIDTH],
+    };
+
+    pub(crate) fn set_bounds(&mut self, slot: usize, bounds: &Bounds3) {
+        for axis in 0..3 {
+            self.planes[axis][0][slot] = bounds.min[axis];
+            self.planes[axis][1][slot] = bounds.max[axis];
+        }
+    }
+
+    /// The same node in a hierarchy in which nodes and packed things have higher numbers.
+    pub(crate) fn moved(mut self, nodes: u32, packed: u32) -> Self {
+        for child in &mut self.children {
+            *child += match *child {
+                LEAF => 0, // an empty slot
+                leaf if leaf & LEAF != 0 => packed << COUNT_BITS,
+                _ => nodes,
+            };
+        }
+        self
+    }
 }
 
 /// A hierarchy over items that its owner keeps in leaf order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bvh8 {
-    pub nodes: Vec<Node>,
+    pub nodes: Big<Node>,
     pub stats: Stats,
+}
+
+impl Bvh8 {
+    /// The box around everything.
+    pub(crate) fn bounds(&self) -> Bounds3 {
+        let Some(root) = self.nodes.first() else { return Bounds3::EMPTY };
+        let [x, y, z] = root.planes.map(|[low, high]| {
+            [
+                low.into_iter().fold(f32::INFINITY, f32::min),
+                high.into_iter().fold(f32::NEG_INFINITY, f32::max),
+            ]
+        });
+        Bounds3 { min: Point3::new(x[0], y[0], z[0]), max: Point3::new(x[1], y[1], z[1]) }
+    }
 }
 
 /// Figures about a hierarchy.

@@ -86,7 +86,7 @@ pub(crate) trait VisitLeaf {
 impl Bvh8 {
     /// Visits the leaves that a ray may meet, nearest first, with their first item and number of items.
     #[inline(always)]
-    pub(crate) fn walk<S: Simd>(&self, ray: &Ray, t_max: f32, visitor: &mut impl VisitLeaf) {
+    pub(crate) fn walk<S: Simd, V: VisitLeaf>(&self, ray: &Ray, t_max: f32, visitor: &mut V) {
         if self.nodes.is_empty() || t_max.is_nan() {
             return;
         }
@@ -99,7 +99,11 @@ impl Bvh8 {
                 let node = &self.nodes[current as usize];
                 let (enter, mask) = ray.intersect(node, t_max);
                 if mask != 0 {
-                    current = descend::<S>(node, enter, mask, &mut stack);
+                    current = if V::ANY {
+                        descend_any::<S>(node, enter, mask, &mut stack)
+                    } else {
+                        descend::<S>(node, enter, mask, &mut stack)
+                    };
                     continue;
                 }
             } else {
@@ -155,6 +159,25 @@ fn descend<S: Simd>(node: &Node, enter: S::F8, mut mask: u32, stack: &mut Stack)
             at -= 1;
         }
         stack[at] = far;
+    }
+    nearest as u32
+}
+
+/// The nearest child that the ray meets; the others go onto the stack as they come.
+#[inline(always)]
+fn descend_any<S: Simd>(node: &Node, enter: S::F8, mut mask: u32, stack: &mut Stack) -> u32 {
+    let enter = enter.to_array();
+    let mut next = || {
+        let i = mask.trailing_zeros() as usize % WIDTH;
+        mask &= mask - 1;
+        (u64::from(enter[i].to_bits()) << 32 | u64::from(node.children[i]), mask)
+    };
+    let (mut nearest, mut rest) = next();
+    while rest != 0 {
+        let (other, r) = next();
+        rest = r;
+        stack.push(nearest.max(other));
+        nearest = nearest.min(other);
     }
     nearest as u32
 }

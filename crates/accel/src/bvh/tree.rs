@@ -1,7 +1,10 @@
 //! The binary tree that all builders make and the collapse turns into nodes.
 
 use aureole_math::{Bounds3, Point3};
+use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
+
+use crate::big::Big;
 
 /// Marks a leaf.
 const LEAF: u32 = 1 << 31;
@@ -10,7 +13,7 @@ const LEAF: u32 = 1 << 31;
 pub(crate) const FREE_LEVELS: usize = 40;
 
 /// The box of a primitive on its way through a builder. The fourth lane of `max` carries the bits of its number.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Item {
     pub min: Vec4,
@@ -34,6 +37,12 @@ impl Item {
     #[inline(always)]
     pub(crate) fn center(&self) -> Vec4 {
         self.min + self.max
+    }
+
+    /// One component of it.
+    #[inline(always)]
+    pub(crate) fn center_on(&self, axis: usize) -> f32 {
+        self.min.as_ref()[axis] + self.max.as_ref()[axis]
     }
 
     pub(crate) fn bounds(&self) -> Extent {
@@ -77,7 +86,8 @@ impl Extent {
 }
 
 /// A node of a binary tree.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
 pub(crate) struct BinaryNode {
     pub bounds: Bounds3,
     /// The children, or the first item and the number of items with [`LEAF`].
@@ -94,14 +104,20 @@ pub(crate) enum Below {
 }
 
 impl BinaryNode {
-    pub(crate) const EMPTY: Self = Self { bounds: Bounds3::EMPTY, links: [0, LEAF] };
-
     pub(crate) fn inner(bounds: Bounds3, left: usize, right: usize) -> Self {
         Self { bounds, links: [left as u32, right as u32] }
     }
 
     pub(crate) fn leaf(bounds: Bounds3, first: usize, count: usize) -> Self {
         Self { bounds, links: [first as u32, count as u32 | LEAF] }
+    }
+
+    /// The same node in a tree whose numbers are higher by `offset`.
+    pub(crate) fn moved(self, offset: usize) -> Self {
+        match self.below() {
+            Below::Nodes(left, right) => Self::inner(self.bounds, left + offset, right + offset),
+            Below::Items { .. } => self,
+        }
     }
 
     #[inline]
@@ -122,10 +138,11 @@ impl BinaryNode {
     }
 }
 
-/// A binary tree; the root is node 0. Not every node needs to be in use.
-#[derive(Clone, Debug, Default)]
+/// A binary tree in depth-first order: the root is node 0, the left child comes right after its parent, and whatever is below
+/// a node is between it and what comes after it. The items of the leaves are in the same order.
+#[derive(Debug, Default)]
 pub(crate) struct BinaryTree {
-    pub nodes: Vec<BinaryNode>,
+    pub nodes: Big<BinaryNode>,
     /// The primitives of the leaves.
-    pub order: Vec<u32>,
+    pub order: Big<u32>,
 }
