@@ -4,6 +4,7 @@
 //! |---|---|---|---|
 //! | `material` | string | Cu | a metal's name (`Au`, `Al`, ...), or `none` for a perfect mirror |
 //! | `eta`, `k` | texture | by `material` | complex index of refraction |
+//! | `reflectance` | texture | | reflectance at normal incidence, instead of an index |
 //! | `ext_eta` | float | 1 | index of the medium outside |
 //! | `specular_reflectance` | texture | 1 | factor |
 
@@ -17,14 +18,30 @@ use crate::{Element, Resolver, Texture, TextureContext, spectrum_texture};
 /// What makes a metal's colour.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Metallic {
-    /// Complex index; none for a perfect mirror.
-    index: Option<[Id<Texture>; 2]>,
+    color: Color,
     ext_eta: f32,
     tint: Id<Texture>,
 }
 
+/// What decides how much a metal reflects.
+#[derive(Clone, Copy, Debug)]
+enum Color {
+    /// Everything.
+    Mirror,
+    /// The complex index.
+    Index([Id<Texture>; 2]),
+    /// The reflectance at normal incidence, by an index whose real part is one.
+    Reflectance(Id<Texture>),
+}
+
+/// The imaginary index, beside a real one of 1, that reflects so much at normal incidence: r = k² / (4 + k²).
+fn absorption(reflectance: Spectrum) -> Spectrum {
+    let r = reflectance.clamp(0.0, 0.9999);
+    (r / (Spectrum::ONE - r)).sqrt() * 2.0
+}
+
 /// Documentation of the parameters of metals.
-pub(super) const METAL_PARAMS: [ParamDoc; 5] = [
+pub(super) const METAL_PARAMS: [ParamDoc; 6] = [
     ParamDoc {
         name: "material",
         ty: "string",
@@ -33,6 +50,12 @@ pub(super) const METAL_PARAMS: [ParamDoc; 5] = [
     },
     ParamDoc { name: "eta", ty: "texture", default: "by material", doc: "index of refraction, real part" },
     ParamDoc { name: "k", ty: "texture", default: "by material", doc: "index of refraction, imaginary part" },
+    ParamDoc {
+        name: "reflectance",
+        ty: "texture",
+        default: "",
+        doc: "reflectance at normal incidence, instead of an index",
+    },
     ParamDoc { name: "ext_eta", ty: "float", default: "1", doc: "index of the medium outside" },
     ParamDoc { name: "specular_reflectance", ty: "texture", default: "1", doc: "factor" },
 ];
@@ -41,15 +64,20 @@ impl Metallic {
     pub(super) fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
         let tint = spectrum_texture(params, resolver, "specular_reflectance", 1.0, SpectrumRole::Albedo)?;
         let ext_eta = params.float_in("ext_eta", 1.0, 0.1, 10.0)?;
-        let mut this = Self { index: None, ext_eta, tint };
+        let mut this = Self { color: Color::Mirror, ext_eta, tint };
         let name = params.try_string("material")?;
         if name.as_deref() == Some("none") {
+            return Ok(this);
+        }
+        if params.has("reflectance") {
+            let color = spectrum_texture(params, resolver, "reflectance", 1.0, SpectrumRole::Albedo)?;
+            this.color = Color::Reflectance(color);
             return Ok(this);
         }
         if params.has("eta") || params.has("k") {
             let mut part =
                 |name, default| spectrum_texture(params, resolver, name, default, SpectrumRole::Unbounded);
-            this.index = Some([part("eta", 0.0)?, part("k", 1.0)?]);
+            this.color = Color::Index([part("eta", 0.0)?, part("k", 1.0)?]);
             return Ok(this);
         }
         let name = name.unwrap_or_else(|| "Cu".to_owned());
@@ -62,15 +90,18 @@ impl Metallic {
         let mut part = |table: &std::sync::Arc<_>| {
             resolver.constant(&SpectrumSource::Tabulated(std::sync::Arc::clone(table)), SpectrumRole::Index)
         };
-        this.index = Some([part(&found.eta), part(&found.k)]);
+        this.color = Color::Index([part(&found.eta), part(&found.k)]);
         Ok(this)
     }
 
     #[inline]
     pub(super) fn at(&self, at: &TextureContext<'_>) -> Metal {
-        let index =
-            self.index.map(|[eta, k]| [at.spectrum(eta) / self.ext_eta, at.spectrum(k) / self.ext_eta]);
-        Metal { index, tint: at.spectrum(self.tint) }
+        let index = match self.color {
+            Color::Mirror => None,
+            Color::Index([eta, k]) => Some([at.spectrum(eta), at.spectrum(k)]),
+            Color::Reflectance(r) => Some([Spectrum::ONE, absorption(at.spectrum(r))]),
+        };
+        Metal { index, tint: at.spectrum(self.tint) }.below(self.ext_eta)
     }
 }
 
@@ -84,6 +115,12 @@ pub struct Metal {
 }
 
 impl Metal {
+    /// The same metal below a medium of index `eta` instead of vacuum.
+    #[inline]
+    pub fn below(self, eta: f32) -> Self {
+        Self { index: self.index.map(|[n, k]| [n / eta, k / eta]), ..self }
+    }
+
     /// Reflectance at a cosine of incidence.
     #[inline]
     pub fn reflectance(&self, cos_i: f32) -> Spectrum {

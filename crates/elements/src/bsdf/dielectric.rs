@@ -11,6 +11,7 @@ use aureole_desc::{ParamDoc, Params, SceneError, Value};
 use aureole_math::{Id, Point2, Vector3};
 use aureole_spectrum::{Spectrum, SpectrumRole, dielectric_ior, dielectrics};
 
+use super::lobe::Sides;
 use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
 use crate::{Element, Resolver, Texture, TextureContext, spectrum_texture};
 
@@ -127,28 +128,7 @@ impl LobeOps for DielectricLobe {
 
     #[inline]
     fn sample(&self, wo: Vector3, uc: f32, _: Point2, mode: TransportMode) -> Option<LobeSample> {
-        let f = fresnel::dielectric(wo.z, self.glass.eta);
-        if wo.z == 0.0 {
-            return None;
-        }
-        if uc < f.reflectance {
-            let wi = Vector3::new(-wo.x, -wo.y, wo.z);
-            let value = self.glass.reflectance * (f.reflectance / wi.z.abs());
-            return Some(LobeSample {
-                wi,
-                value,
-                pdf_omega: f.reflectance,
-                flags: LobeFlags::DELTA_REFLECTION,
-                eta: 1.0,
-            });
-        }
-        let scale = 1.0 / f.eta_path;
-        let wi = Vector3::new(-wo.x * scale, -wo.y * scale, f.cos_t);
-        // Refraction squeezes a pencil of radiance by the square of the relative index.
-        let squeeze = if mode == TransportMode::Radiance { scale * scale } else { 1.0 };
-        let pdf_omega = 1.0 - f.reflectance;
-        let value = self.glass.transmittance * (squeeze * pdf_omega / wi.z.abs());
-        Some(LobeSample { wi, value, pdf_omega, flags: LobeFlags::DELTA_TRANSMISSION, eta: f.eta_path })
+        self.sample_from(Sides::Both, wo, uc, mode)
     }
 
     fn pdf_omega(&self, _: Vector3, _: Vector3) -> f32 {
@@ -162,5 +142,41 @@ impl LobeOps for DielectricLobe {
     fn albedo(&self, wo: Vector3) -> Spectrum {
         let f = fresnel::dielectric(wo.z, self.glass.eta).reflectance;
         self.glass.reflectance * f + self.glass.transmittance * (1.0 - f)
+    }
+}
+
+impl DielectricLobe {
+    /// Draws from some sides.
+    #[inline]
+    pub(super) fn sample_from(
+        &self,
+        sides: Sides,
+        wo: Vector3,
+        uc: f32,
+        mode: TransportMode,
+    ) -> Option<LobeSample> {
+        let f = fresnel::dielectric(wo.z, self.glass.eta);
+        let p = sides.reflection_probability(f.reflectance)?;
+        if wo.z == 0.0 {
+            return None;
+        }
+        if uc < p {
+            let wi = Vector3::new(-wo.x, -wo.y, wo.z);
+            let value = self.glass.reflectance * (f.reflectance / wi.z.abs());
+            return Some(LobeSample {
+                wi,
+                value,
+                pdf_omega: p,
+                flags: LobeFlags::DELTA_REFLECTION,
+                eta: 1.0,
+            });
+        }
+        let scale = 1.0 / f.eta_path;
+        let wi = Vector3::new(-wo.x * scale, -wo.y * scale, f.cos_t);
+        // Refraction squeezes a pencil of radiance by the square of the relative index.
+        let squeeze = if mode == TransportMode::Radiance { scale * scale } else { 1.0 };
+        let value = self.glass.transmittance * (squeeze * (1.0 - f.reflectance) / wi.z.abs());
+        let flags = LobeFlags::DELTA_TRANSMISSION;
+        Some(LobeSample { wi, value, pdf_omega: 1.0 - p, flags, eta: f.eta_path })
     }
 }

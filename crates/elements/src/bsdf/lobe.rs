@@ -4,8 +4,9 @@ use aureole_math::{Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
 use super::{
-    ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, NullLobe, PlasticLobe,
-    RoughConductorLobe, RoughDielectricLobe, RoughPlasticLobe, ThinDielectricLobe,
+    ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, HairLobe, LayeredLobe, NullLobe,
+    PlasticLobe, PrincipledLobe, PrincipledThinLobe, RoughConductorLobe, RoughDielectricLobe,
+    RoughPlasticLobe, ThinDielectricLobe,
 };
 
 /// What travels along a path: refraction squeezes radiance, but not importance.
@@ -16,6 +17,37 @@ pub enum TransportMode {
     Radiance,
     /// From the lights towards the eye.
     Importance,
+}
+
+impl TransportMode {
+    /// The mode of the same path walked the other way.
+    #[inline]
+    pub fn adjoint(self) -> Self {
+        match self {
+            Self::Radiance => Self::Importance,
+            Self::Importance => Self::Radiance,
+        }
+    }
+}
+
+/// Which part of a boundary's scattering is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sides {
+    Both,
+    Reflection,
+    Transmission,
+}
+
+impl Sides {
+    /// The probability of drawing a reflection from a boundary that reflects so much; none if nothing is left to draw.
+    #[inline]
+    pub(super) fn reflection_probability(self, reflectance: f32) -> Option<f32> {
+        match self {
+            Self::Both => Some(reflectance),
+            Self::Reflection => (reflectance > 0.0).then_some(1.0),
+            Self::Transmission => (reflectance < 1.0).then_some(0.0),
+        }
+    }
 }
 
 /// What kind of scattering a sample is.
@@ -69,6 +101,12 @@ pub trait LobeOps {
         false
     }
 
+    /// Whether values and densities are estimates by a random walk: then draws follow the density only nearly, and only a
+    /// sample's own value over its own density is right on average.
+    fn is_estimate(&self) -> bool {
+        false
+    }
+
     /// Whether [`sample`](Self::sample) looks at `uc`: a lobe of one part has nothing to choose.
     fn has_choice(&self) -> bool {
         true
@@ -111,6 +149,10 @@ macro_rules! lobes {
                 match self { $(Self::$Variant(lobe) => lobe.is_delta()),* }
             }
             #[inline]
+            fn is_estimate(&self) -> bool {
+                match self { $(Self::$Variant(lobe) => lobe.is_estimate()),* }
+            }
+            #[inline]
             fn has_choice(&self) -> bool {
                 match self { $(Self::$Variant(lobe) => lobe.has_choice()),* }
             }
@@ -131,5 +173,9 @@ lobes! {
     Plastic(PlasticLobe),
     RoughPlastic(RoughPlasticLobe),
     DiffuseTransmission(DiffuseTransmissionLobe),
+    Principled(PrincipledLobe),
+    PrincipledThin(PrincipledThinLobe),
+    Layered(LayeredLobe),
+    Hair(HairLobe),
     Null(NullLobe),
 }

@@ -255,6 +255,35 @@ impl Roughness {
     }
 }
 
+/// Facets of a surface that is smooth where they are too fine to matter: pbrt's interfaces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Finish {
+    alpha_u: Id<Texture>,
+    alpha_v: Id<Texture>,
+}
+
+impl Finish {
+    /// Reads the roughness of that name, and those along and across the tangent that end in `_u` and `_v`; 0 by default.
+    pub(super) fn from_params(
+        params: &mut Params,
+        resolver: &mut dyn Resolver,
+        name: &str,
+    ) -> Result<Self, SceneError> {
+        let both = float_texture(params, resolver, name, 0.0)?;
+        let mut one = |name: String| {
+            if params.has(&name) { float_texture(params, resolver, &name, 0.0) } else { Ok(both) }
+        };
+        Ok(Self { alpha_u: one(format!("{name}_u"))?, alpha_v: one(format!("{name}_v"))? })
+    }
+
+    /// The facets at a point; none where the surface is smooth.
+    #[inline]
+    pub(super) fn at(&self, at: &TextureContext<'_>) -> Option<Microfacet> {
+        let [u, v] = [self.alpha_u, self.alpha_v].map(|alpha| at.float(alpha));
+        (u.max(v) >= 1e-3).then(|| Microfacet::new(Distribution::Ggx, u, v))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

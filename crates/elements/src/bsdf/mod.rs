@@ -6,17 +6,26 @@
 mod bend;
 mod blend;
 mod bump;
+mod coated_conductor;
+mod coated_diffuse;
 mod conductor;
 mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
+mod disney;
 pub mod fresnel;
+mod hair;
+mod hair_lobe;
+mod layered;
 mod lobe;
 mod mask;
 pub mod microfacet;
 mod normal_map;
 mod null;
+mod phase;
 mod plastic;
+mod principled;
+mod principled_thin;
 mod rough_conductor;
 mod rough_dielectric;
 mod rough_plastic;
@@ -33,15 +42,22 @@ use crate::{Resolver, TextureContext};
 
 pub use blend::Blend;
 pub use bump::Bump;
+pub use coated_conductor::CoatedConductor;
+pub use coated_diffuse::CoatedDiffuse;
 pub use conductor::{Conductor, ConductorLobe};
 pub use dielectric::{Dielectric, DielectricLobe};
 pub use diffuse::{Diffuse, DiffuseLobe};
 pub use diffuse_transmission::{DiffuseTransmission, DiffuseTransmissionLobe};
+pub use hair::Hair;
+pub use hair_lobe::HairLobe;
+pub use layered::{Base, LayeredLobe};
 pub use lobe::{Lobe, LobeFlags, LobeOps, LobeSample, TransportMode};
 pub use mask::Mask;
 pub use normal_map::NormalMap;
 pub use null::{Null, NullLobe};
 pub use plastic::{Plastic, PlasticLobe};
+pub use principled::{Principled, PrincipledLobe};
+pub use principled_thin::{PrincipledThin, PrincipledThinLobe};
 pub use rough_conductor::{RoughConductor, RoughConductorLobe};
 pub use rough_dielectric::{RoughDielectric, RoughDielectricLobe};
 pub use rough_plastic::{RoughPlastic, RoughPlasticLobe};
@@ -94,6 +110,11 @@ registry! {
     plastic::Plastic as Plastic = "plastic",
     rough_plastic::RoughPlastic as RoughPlastic = "rough_plastic",
     diffuse_transmission::DiffuseTransmission as DiffuseTransmission = "diffuse_transmission",
+    coated_diffuse::CoatedDiffuse as CoatedDiffuse = "coated_diffuse",
+    coated_conductor::CoatedConductor as CoatedConductor = "coated_conductor",
+    principled::Principled as Principled = "principled",
+    principled_thin::PrincipledThin as PrincipledThin = "principled_thin",
+    hair::Hair as Hair = "hair",
     two_sided::TwoSided as TwoSided = "two_sided",
     mask::Mask as Mask = "mask",
     blend::Blend as Blend = "blend",

@@ -23,9 +23,9 @@ pub struct RoughConductor {
 impl Element for RoughConductor {
     const SUMMARY: &'static str = "A rough metal.";
     const PARAMS: &'static [ParamDoc] = &{
-        let [a, b, c, d, e] = METAL_PARAMS;
-        let [f, g, h, i] = ROUGHNESS_PARAMS;
-        [a, b, c, d, e, f, g, h, i]
+        let [a, b, c, d, e, f] = METAL_PARAMS;
+        let [g, h, i, j] = ROUGHNESS_PARAMS;
+        [a, b, c, d, e, f, g, h, i, j]
     };
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {

@@ -9,6 +9,7 @@ use aureole_math::{Point2, Vector3, reflect, refract};
 use aureole_spectrum::Spectrum;
 
 use super::dielectric::{Boundary, DIELECTRIC_PARAMS, Glass};
+use super::lobe::Sides;
 use super::microfacet::{Microfacet, ROUGHNESS_PARAMS, Roughness};
 use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
 use crate::{Element, Resolver};
@@ -101,12 +102,37 @@ impl LobeOps for RoughDielectricLobe {
 
     #[inline]
     fn sample(&self, wo: Vector3, uc: f32, u: Point2, mode: TransportMode) -> Option<LobeSample> {
+        self.sample_from(Sides::Both, wo, uc, u, mode)
+    }
+
+    #[inline]
+    fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {
+        self.pdf_from(Sides::Both, wo, wi)
+    }
+
+    fn albedo(&self, wo: Vector3) -> Spectrum {
+        let f = fresnel::dielectric(wo.z, self.glass.eta).reflectance;
+        self.glass.reflectance * f + self.glass.transmittance * (1.0 - f)
+    }
+}
+
+impl RoughDielectricLobe {
+    /// Draws from some sides.
+    #[inline]
+    pub(super) fn sample_from(
+        &self,
+        sides: Sides,
+        wo: Vector3,
+        uc: f32,
+        u: Point2,
+        mode: TransportMode,
+    ) -> Option<LobeSample> {
         if wo.z == 0.0 {
             return None;
         }
         let m = self.surface.sample_visible(Self::above(wo), u);
         let f = fresnel::dielectric(wo.dot(m), self.glass.eta).reflectance;
-        let (wi, flags, eta) = if uc < f {
+        let (wi, flags, eta) = if uc < sides.reflection_probability(f)? {
             (reflect(wo, m), LobeFlags::REFLECTION, 1.0)
         } else {
             let refraction = refract(wo, m, self.glass.eta)?;
@@ -115,25 +141,22 @@ impl LobeOps for RoughDielectricLobe {
         if (wi.z * wo.z > 0.0) == flags.transmission {
             return None;
         }
-        let pdf_omega = self.pdf_omega(wo, wi);
+        let pdf_omega = self.pdf_from(sides, wo, wi);
         (pdf_omega > 0.0).then(|| LobeSample { wi, value: self.eval(wo, wi, mode), pdf_omega, flags, eta })
     }
 
+    /// The density of [`sample_from`](Self::sample_from).
     #[inline]
-    fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {
+    pub(super) fn pdf_from(&self, sides: Sides, wo: Vector3, wi: Vector3) -> f32 {
         let Some(facet) = self.facet(wo, wi) else { return 0.0 };
         let m = facet.m;
         let f = fresnel::dielectric(wo.dot(m), self.glass.eta).reflectance;
+        let Some(p) = sides.reflection_probability(f) else { return 0.0 };
         let pdf_m = self.surface.pdf_visible(Self::above(wo), m);
         if facet.is_reflection {
-            return f * pdf_m / (4.0 * wo.abs_dot(m));
+            return p * pdf_m / (4.0 * wo.abs_dot(m));
         }
         let denominator = (wo.dot(m) / facet.eta_path + wi.dot(m)).powi(2);
-        (1.0 - f) * pdf_m * wi.abs_dot(m) / denominator
-    }
-
-    fn albedo(&self, wo: Vector3) -> Spectrum {
-        let f = fresnel::dielectric(wo.z, self.glass.eta).reflectance;
-        self.glass.reflectance * f + self.glass.transmittance * (1.0 - f)
+        (1.0 - p) * pdf_m * wi.abs_dot(m) / denominator
     }
 }

@@ -136,6 +136,11 @@ impl Bsdf {
         self.lobes.iter().any(|placed| !placed.lobe.is_delta())
     }
 
+    /// Whether values and densities are estimates by a random walk.
+    pub fn is_estimate(&self) -> bool {
+        self.lobes.iter().any(|placed| placed.lobe.is_estimate())
+    }
+
     /// Value times |cos θi|.
     #[inline]
     pub fn eval_cos(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> Spectrum {
@@ -169,15 +174,18 @@ impl Bsdf {
             return None;
         }
         let probability = chosen.weight / total;
-        let (value_cos, pdf_omega) = if drawn.flags.delta || self.lobes.len() == 1 {
-            (
-                drawn.value * (drawn.wi.z.abs() * chosen.weight * chosen.shadowing(wi)),
-                drawn.pdf_omega * probability,
-            )
+        let own_pdf = drawn.pdf_omega * probability;
+        let own_value = || drawn.value * (drawn.wi.z.abs() * chosen.weight * chosen.shadowing(wi));
+        let (weight, pdf_omega) = if drawn.flags.delta || self.lobes.len() == 1 {
+            (own_value() / own_pdf, own_pdf)
+        } else if self.is_estimate() {
+            // Only the lobe's own value over its own density is right on average; the sum of densities still serves to
+            // weigh this sample against those of lights.
+            (own_value() / own_pdf, self.pdf_omega(wo, wi))
         } else {
-            (self.eval_cos(wo, wi, mode), self.pdf_omega(wo, wi))
+            let pdf_omega = self.pdf_omega(wo, wi);
+            (self.eval_cos(wo, wi, mode) / pdf_omega, pdf_omega)
         };
-        let weight = value_cos / pdf_omega;
         let usable = pdf_omega > 0.0 && weight.is_finite() && !weight.is_black();
         usable.then_some(BsdfSample { wi, weight, pdf_omega, flags: drawn.flags, eta: drawn.eta })
     }

@@ -95,6 +95,84 @@ fn examples(world: &mut World) -> Vec<Example> {
         ("blend with glass", true, {
             world.add(bsdf, "blend", [("weight", Float(0.6)), ("a", lacquer), ("b", glass)])
         }),
+        ("coated diffuse", true, {
+            world.add(
+                bsdf,
+                "coated_diffuse",
+                [("reflectance", rgb(0.8, 0.5, 0.2)), ("alpha_u", Float(0.3)), ("alpha_v", Float(0.15))],
+            )
+        }),
+        ("smoothly coated diffuse", true, {
+            world.add(
+                bsdf,
+                "coated_diffuse",
+                [
+                    ("reflectance", Float(0.9)),
+                    ("thickness", Float(0.5)),
+                    ("albedo", rgb(0.9, 0.7, 0.4)),
+                    ("g", Float(0.3)),
+                    ("sample_count", Value::Int(2)),
+                ],
+            )
+        }),
+        ("coated conductor", true, {
+            world.add(bsdf, "coated_conductor", [("alpha", Float(0.1)), ("base_alpha", Float(0.3))])
+        }),
+        ("smoothly coated conductor", true, {
+            world.add(bsdf, "coated_conductor", [("reflectance", rgb(0.9, 0.6, 0.3))])
+        }),
+        ("principled", true, {
+            world.add(
+                bsdf,
+                "principled",
+                [
+                    ("base_color", rgb(0.6, 0.4, 0.2)),
+                    ("roughness", Float(0.4)),
+                    ("anisotropic", Float(0.5)),
+                    ("metallic", Float(0.3)),
+                    ("spec_trans", Float(0.4)),
+                    ("specular", Float(0.7)),
+                    ("spec_tint", Float(0.5)),
+                    ("sheen", Float(0.2)),
+                    ("sheen_tint", Float(0.6)),
+                    ("flatness", Float(0.3)),
+                    ("clearcoat", Float(0.5)),
+                    ("clearcoat_gloss", Float(0.2)),
+                ],
+            )
+        }),
+        ("principled by default", true, world.add(bsdf, "principled", [])),
+        ("principled glass", true, {
+            world.add(
+                bsdf,
+                "principled",
+                [("base_color", Float(0.9)), ("spec_trans", Float(1.0)), ("eta", Float(1.33))],
+            )
+        }),
+        ("thin principled", false, {
+            world.add(
+                bsdf,
+                "principled_thin",
+                [
+                    ("base_color", rgb(0.6, 0.4, 0.2)),
+                    ("roughness", Float(0.4)),
+                    ("anisotropic", Float(0.5)),
+                    ("spec_trans", Float(0.4)),
+                    ("eta", Float(1.33)),
+                    ("spec_tint", Float(0.3)),
+                    ("sheen", Float(0.3)),
+                    ("sheen_tint", Float(0.6)),
+                    ("flatness", Float(0.3)),
+                    ("diff_trans", Float(0.8)),
+                ],
+            )
+        }),
+        ("hair", false, {
+            world.add(bsdf, "hair", [("beta_m", Float(0.4)), ("beta_n", Float(0.5)), ("alpha", Float(3.0))])
+        }),
+        ("smooth light hair", false, {
+            world.add(bsdf, "hair", [("reflectance", rgb(0.9, 0.7, 0.4)), ("beta_m", Float(0.15))])
+        }),
         ("null", true, world.add(bsdf, "null", [])),
         ("bump", false, world.add(bsdf, "bump", [("texture", slope), ("bsdf", diffuse.clone())])),
         ("bump from a picture", false, {
@@ -167,7 +245,7 @@ fn draws_follow_their_density() {
     for example in &examples {
         for wo in views() {
             let bsdf = bsdf_at(&world, example.material, UPRIGHT, wo);
-            if !bsdf.is_smooth() {
+            if !bsdf.is_smooth() || bsdf.is_estimate() {
                 continue;
             }
             let sample =
@@ -194,6 +272,9 @@ fn weights_are_value_over_density() {
         for mode in [Radiance, Importance] {
             for wo in views() {
                 let bsdf = bsdf_at(&world, example.material, UPRIGHT, wo);
+                if bsdf.is_estimate() {
+                    continue;
+                }
                 for _ in 0..500 {
                     let Some(s) = draw(&bsdf, wo, mode, &mut rng).filter(|s| !s.flags.delta) else {
                         continue;
@@ -206,6 +287,32 @@ fn weights_are_value_over_density() {
                     assert_eq!(s.flags.transmission, s.wi.dot(Vector3::Z) * wo.z < 0.0, "{}", example.label);
                 }
             }
+        }
+    }
+}
+
+/// Estimates by random walks are right on average: drawn weights sum to the integral of values. A false alarm is one of
+/// ten thousand seeds.
+#[test]
+fn estimated_draws_have_the_mean_of_values() {
+    let mut world = World::default();
+    for example in examples(&mut world) {
+        for wo in views() {
+            let bsdf = bsdf_at(&world, example.material, UPRIGHT, wo);
+            if !bsdf.is_estimate() || !bsdf.is_smooth() {
+                continue;
+            }
+            let drawn = furnace(100_000, 7, |rng| {
+                draw(&bsdf, wo, Radiance, rng).filter(|s| !s.flags.delta).map(|s| s.weight.rgb()[0].into())
+            });
+            let valued = furnace(100_000, 8, |rng| {
+                let wi = warp::square_to_uniform_sphere(rng.point2());
+                let value = bsdf.eval_cos(wo, wi, Radiance).rgb()[0] / warp::UNIFORM_SPHERE_PDF;
+                Some(value.into())
+            });
+            let error = (drawn.value - valued.value).abs();
+            let sigma = drawn.standard_error.hypot(valued.standard_error);
+            assert!(error < 4.5 * sigma + 2e-3, "{} from {wo:?}: {drawn:?} {valued:?}", example.label);
         }
     }
 }
@@ -236,6 +343,9 @@ fn no_energy_is_made() {
 fn light_may_walk_either_way() {
     let mut world = World::default();
     for example in examples(&mut world).into_iter().filter(|example| example.is_reciprocal) {
+        if bsdf_at(&world, example.material, UPRIGHT, Vector3::Z).is_estimate() {
+            continue;
+        }
         let value = |wo: Vector3, wi: Vector3, mode| {
             bsdf_at(&world, example.material, UPRIGHT, wo).eval_cos(wo, wi, mode).rgb()[0] / wi.z.abs()
         };
@@ -287,6 +397,10 @@ fn values_are_those_of_mitsuba() {
         ("air bubble", [0.42956, 0.41627, 0.064128, 0.84962]),
         ("plastic", [0.13699, 0.087944, 0.0, 0.0]),
         ("nonlinear plastic", [0.15394, 0.098822, 0.0, 0.0]),
+        ("principled", [0.15573, 0.088822, 0.089519, 0.019051]),
+        ("principled by default", [0.13506, 0.1322, 0.0, 0.0]),
+        ("principled glass", [0.019666, 0.029573, 1.0435, 0.62405]),
+        ("thin principled", [0.045968, 0.050596, 0.093499, 0.1654]),
         ("rough plastic", [0.10504, 0.099856, 0.0, 0.0]),
         ("two-sided plastic", [0.13699, 0.087944, 0.0, 0.0]),
         ("two-faced", [0.59692, 0.39792, 0.0, 0.0]),
@@ -325,6 +439,9 @@ fn the_frame_does_not_matter() {
     let tilted = Frame::from_normal_and_tangent(Vector3::new(0.3, -0.8, 0.4).normalized(), Vector3::X);
     let mut rng = Pcg32::new(6);
     for example in examples(&mut world) {
+        if bsdf_at(&world, example.material, UPRIGHT, Vector3::Z).is_estimate() {
+            continue;
+        }
         for _ in 0..200 {
             let (wo, wi) =
                 (warp::square_to_uniform_sphere(rng.point2()), warp::square_to_uniform_sphere(rng.point2()));

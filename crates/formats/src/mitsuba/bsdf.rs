@@ -49,6 +49,15 @@ pub(super) fn translate<'a>(
             scope.default("distribution", word("beckmann"));
         }
         "roughdielectric" | "roughplastic" => scope.default("distribution", word("beckmann")),
+        "hair" => hair(&mut scope),
+        "principled" | "principledthin" => scope.ignore(&[
+            "main_specular_sampling_rate",
+            "clearcoat_sampling_rate",
+            "specular_reflectance_sampling_rate",
+            "specular_transmittance_sampling_rate",
+            "diffuse_reflectance_sampling_rate",
+            "diffuse_transmittance_sampling_rate",
+        ]),
         "pplastic" => {
             let message = "`pplastic` is rendered as `plastic`: polarisation is not carried";
             t.context.report.warn(message, scope.span());
@@ -87,5 +96,20 @@ fn metal(scope: &mut Scope<'_>) {
         scope.default("k", uniform(1.0));
     } else {
         scope.default("material", word("none"));
+    }
+}
+
+/// Mitsuba's hair is known by other names, and meets its round curves by their normals.
+fn hair(scope: &mut Scope<'_>) {
+    for (theirs, ours) in
+        [("longitudinal_roughness", "beta_m"), ("azimuthal_roughness", "beta_n"), ("scale_tilt", "alpha")]
+    {
+        scope.rename(theirs, ours);
+    }
+    scope.default("offset", word("normal"));
+    scope.default("int_ior", word("amber"));
+    if !scope.has("sigma_a") {
+        scope.default("eumelanin", Value::Float(1.3));
+        scope.default("pheomelanin", Value::Float(0.2));
     }
 }

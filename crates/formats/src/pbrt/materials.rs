@@ -1,7 +1,5 @@
 //! Materials. In pbrt they look the same from both sides.
 
-use std::sync::Arc;
-
 use aureole_desc::{Family, NodeId, Params, SceneError, Value};
 use aureole_spectrum::{SpectrumRole, SpectrumSource, named_spectrum};
 
@@ -63,7 +61,9 @@ impl Reader<'_, '_> {
             "coateddiffuse" => self.coated_diffuse(given)?,
             "mix" => self.mix(given)?,
             "interface" | "none" | "" => ("null", Params::new()),
-            "coatedconductor" | "hair" | "subsurface" | "measured" => self.placeholder(kind, given)?,
+            "coatedconductor" => self.coated_conductor(given)?,
+            "hair" => ("hair", self.hair(given)?),
+            "subsurface" | "measured" => self.placeholder(kind, given)?,
             _ => {
                 let known = KINDS.iter().map(|k| (*k).to_owned()).collect();
                 return Err(SceneError::UnknownKind {
@@ -120,15 +120,14 @@ impl Reader<'_, '_> {
         self.add(Family::Bsdf, kind, params, at)
     }
 
-    /// Roughness as the microfacets' alpha; `None` for a smooth surface.
-    fn roughness(&mut self, given: &ParamSet, default: f64) -> Result<Option<[Value; 2]>, SceneError> {
+    /// Roughness along and across the tangent as the microfacets' alpha.
+    fn alphas(&mut self, given: &ParamSet, prefix: &str, default: f64) -> Result<[Value; 2], SceneError> {
         let remap = given.bool("remaproughness", true)?;
-        let both = given.textured("roughness", self)?;
-        let mut alphas = Vec::new();
-        for name in ["uroughness", "vroughness"] {
-            let value = given.textured(name, self)?.or_else(|| both.clone());
+        let both = given.textured(&format!("{prefix}roughness"), self)?;
+        let mut alpha = |name: &str| -> Result<Value, SceneError> {
+            let value = given.textured(&format!("{prefix}{name}"), self)?.or_else(|| both.clone());
             let value = value.unwrap_or(Value::Spectrum(SpectrumSource::Uniform(default as f32)));
-            alphas.push(match value {
+            Ok(match value {
                 Value::Spectrum(constant) => {
                     let r = constant.to_rgb(SpectrumRole::Unbounded)[0];
                     Value::Float(f64::from(if remap { r.max(0.0).sqrt() } else { r }))
@@ -140,13 +139,16 @@ impl Reader<'_, '_> {
                     Value::Node(self.add(Family::Texture, "power", params, given.span))
                 }
                 other => other,
-            });
-        }
+            })
+        };
+        Ok([alpha("uroughness")?, alpha("vroughness")?])
+    }
+
+    /// Roughness as the microfacets' alpha; `None` for a smooth surface.
+    fn roughness(&mut self, given: &ParamSet, default: f64) -> Result<Option<[Value; 2]>, SceneError> {
         let is_smooth = |value: &Value| matches!(value, Value::Float(alpha) if *alpha < 1e-3);
-        match <[Value; 2]>::try_from(alphas) {
-            Ok(alphas) if !alphas.iter().all(is_smooth) => Ok(Some(alphas)),
-            _ => Ok(None),
-        }
+        let alphas = self.alphas(given, "", default)?;
+        Ok(if alphas.iter().all(is_smooth) { None } else { Some(alphas) })
     }
 
     fn rough(params: &mut Params, [u, v]: [Value; 2], at: aureole_desc::Span) {
@@ -155,33 +157,27 @@ impl Reader<'_, '_> {
         params.push("alpha_v", v, at);
     }
 
-    fn conductor(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
-        let at = given.span;
-        let mut params = self.copied(given, &[("eta", "eta"), ("k", "k")])?;
-        if let Some(reflectance) = given.textured("reflectance", self)? {
-            params = Params::new();
-            match reflectance {
-                // The index that reflects so much at normal incidence: eta = 1, k = 2 √r / √(1 - r).
-                Value::Spectrum(constant) => {
-                    let k = constant.to_rgb(SpectrumRole::Albedo).map(|r| {
-                        let r = r.clamp(0.0, 0.9999);
-                        2.0 * r.sqrt() / (1.0 - r).sqrt()
-                    });
-                    params.push("eta", Value::Float(1.0), at);
-                    params.push("k", Value::Spectrum(SpectrumSource::Rgb(k)), at);
-                }
-                texture => {
-                    params.push("material", Value::String("none".into()), at);
-                    params.push("specular_reflectance", texture, at);
-                }
+    /// What a metal is made of: an index, or a reflectance.
+    fn metal(&mut self, given: &ParamSet, prefix: &str) -> Result<Params, SceneError> {
+        let mut params = self.copied(given, &[("reflectance", "reflectance")])?;
+        for (ours, default) in [("eta", "metal-Cu-eta"), ("k", "metal-Cu-k")] {
+            let theirs = format!("{prefix}{ours}");
+            let value = given.textured(&theirs, self)?;
+            if params.has("reflectance") {
+                continue;
             }
-        } else {
-            for (name, default) in [("eta", "metal-Cu-eta"), ("k", "metal-Cu-k")] {
-                if let (false, Some(table)) = (params.has(name), named_spectrum(default)) {
-                    params.push(name, Value::Spectrum(SpectrumSource::Tabulated(table)), at);
-                }
+            let default =
+                || named_spectrum(default).map(|table| Value::Spectrum(SpectrumSource::Tabulated(table)));
+            if let Some(value) = value.or_else(default) {
+                params.push(ours, value, given.at(&theirs));
             }
         }
+        Ok(params)
+    }
+
+    fn conductor(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let at = given.span;
+        let mut params = self.metal(given, "")?;
         match self.roughness(given, 0.0)? {
             Some(alphas) => {
                 Self::rough(&mut params, alphas, at);
@@ -191,21 +187,21 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// `eta` of a dielectric: a number, or a glass's index near the sodium line.
-    fn index(&mut self, given: &ParamSet) -> Result<Params, SceneError> {
-        let eta = match given.spectrum("eta", self)? {
+    /// The index of a dielectric: a number, or a glass's index near the sodium line.
+    fn eta(&mut self, given: &ParamSet, name: &str) -> Result<f64, SceneError> {
+        Ok(match given.spectrum(name, self)? {
             Some(SpectrumSource::Tabulated(table)) => {
-                self.warn(
-                    "dispersion needs spectral rendering: the index at 589 nm is used",
-                    given.at("eta"),
-                );
+                self.warn("dispersion needs spectral rendering: the index at 589 nm is used", given.at(name));
                 f64::from(table.eval(589.0))
             }
             Some(constant) => f64::from(constant.to_rgb(SpectrumRole::Unbounded)[0]),
             None => 1.5,
-        };
+        })
+    }
+
+    fn index(&mut self, given: &ParamSet) -> Result<Params, SceneError> {
         let mut params = Params::new();
-        params.push("int_ior", Value::Float(eta), given.span);
+        params.push("int_ior", Value::Float(self.eta(given, "eta")?), given.span);
         params.push("ext_ior", Value::Float(1.0), given.span);
         Ok(params)
     }
@@ -236,36 +232,48 @@ impl Reader<'_, '_> {
         Ok(("diffuse_transmission", params))
     }
 
-    fn coated_diffuse(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+    /// A coat and the medium below it; `prefix`: of the coat's own parameters.
+    fn coat(&mut self, given: &ParamSet, prefix: &str) -> Result<Params, SceneError> {
         let at = given.span;
-        self.warn(
-            "`coateddiffuse` is rendered as a plastic: the walk between its layers is not simulated yet",
-            at,
-        );
-        let mut params = self.index(given)?;
-        for (name, value) in
-            self.copied(given, &[("reflectance", "diffuse_reflectance")])?.iter().map(|p| (&p.name, &p.value))
-        {
-            params.push(name.clone(), value.clone(), at);
+        let mut params =
+            self.copied(given, &[("thickness", "thickness"), ("g", "g"), ("albedo", "albedo")])?;
+        params.push("int_ior", Value::Float(self.eta(given, &format!("{prefix}eta"))?), at);
+        params.push("ext_ior", Value::Float(1.0), at);
+        let [u, v] = self.alphas(given, prefix, 0.0)?;
+        params.push("alpha_u", u, at);
+        params.push("alpha_v", v, at);
+        params.push("max_depth", Value::Int(given.int("maxdepth", 10)?), given.at("maxdepth"));
+        params.push("sample_count", Value::Int(given.int("nsamples", 1)?), given.at("nsamples"));
+        Ok(params)
+    }
+
+    fn coated_diffuse(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let mut params = self.coat(given, "")?;
+        if let Some(reflectance) = given.textured("reflectance", self)? {
+            params.push("reflectance", reflectance, given.at("reflectance"));
         }
-        params.push("nonlinear", Value::Bool(true), at);
-        for ignored in ["thickness", "maxdepth", "nsamples", "g", "albedo"] {
-            given.get(ignored);
+        Ok(("coated_diffuse", params))
+    }
+
+    fn coated_conductor(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let mut params = self.coat(given, "interface.")?;
+        for param in self.metal(given, "conductor.")?.iter() {
+            params.set(param.clone());
         }
-        match self.roughness(given, 0.0)? {
-            Some([Value::Float(u), Value::Float(v)]) => {
-                params.push("distribution", Value::String("ggx".into()), at);
-                params.push("alpha", Value::Float((u * v).sqrt()), at);
-                Ok(("rough_plastic", params))
-            }
-            Some(_) => {
-                self.warn("a textured roughness of `coateddiffuse` is not rendered yet: 0.1 is used", at);
-                params.push("distribution", Value::String("ggx".into()), at);
-                params.push("alpha", Value::Float(0.1), at);
-                Ok(("rough_plastic", params))
-            }
-            None => Ok(("plastic", params)),
+        let [u, v] = self.alphas(given, "conductor.", 0.0)?;
+        params.push("base_alpha_u", u, given.span);
+        params.push("base_alpha_v", v, given.span);
+        Ok(("coated_conductor", params))
+    }
+
+    fn hair(&mut self, given: &ParamSet) -> Result<Params, SceneError> {
+        let names =
+            ["sigma_a", "reflectance", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"];
+        let mut params = self.copied(given, &names.map(|name| (name, name)))?;
+        if let Some(colour) = given.textured("color", self)? {
+            params.push("reflectance", colour, given.at("color"));
         }
+        Ok(params)
     }
 
     fn mix(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
@@ -283,20 +291,11 @@ impl Reader<'_, '_> {
 
     /// Something near to a material that is not there yet.
     fn placeholder(&mut self, kind: &str, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
-        let at = given.span;
-        let stand_in = if kind == "coatedconductor" { "a bare conductor" } else { "a matte surface" };
-        self.warn(format!("material `{kind}` is not rendered yet: {stand_in} stands in for it"), at);
-        if kind != "coatedconductor" {
-            given.touch_all();
-            return Ok(("diffuse", self.copied(given, &[("reflectance", "reflectance")])?));
-        }
-        let mut params = self.copied(given, &[("conductor.eta", "eta"), ("conductor.k", "k")])?;
-        for (name, default) in [("eta", "metal-Cu-eta"), ("k", "metal-Cu-k")] {
-            if let (false, Some(table)) = (params.has(name), named_spectrum(default)) {
-                params.push(name, Value::Spectrum(SpectrumSource::Tabulated(Arc::clone(&table))), at);
-            }
-        }
+        self.warn(
+            format!("material `{kind}` is not rendered yet: a matte surface stands in for it"),
+            given.span,
+        );
         given.touch_all();
-        Ok(("conductor", params))
+        Ok(("diffuse", self.copied(given, &[("reflectance", "reflectance")])?))
     }
 }

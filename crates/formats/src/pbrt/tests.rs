@@ -118,7 +118,7 @@ fn path_lengths_are_converted() {
 fn what_is_not_rendered_is_named() {
     for (text, word) in [
         ("Shape \"curve\"", "curve"),
-        ("Material \"hair\"", "hair"),
+        ("Material \"subsurface\"", "subsurface"),
         ("LightSource \"projection\"", "projection"),
         ("Texture \"a\" \"float\" \"fbm\"", "fbm"),
         ("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"", "media"),
