@@ -13,6 +13,19 @@ pub struct Limits {
     pub max_mesh_elements: u64,
     /// Pixels of an image, rendered or read.
     pub max_pixels: u64,
+    /// Bytes that one packed byte may unpack to, once there are more than [`UNPACK_FREELY`](Self::UNPACK_FREELY) of them.
+    pub max_unpack_ratio: u64,
+}
+
+impl Limits {
+    /// Bytes that any packed file may unpack to: it is the large ones that hurt.
+    pub const UNPACK_FREELY: u64 = 16 << 20;
+
+    /// Bytes that so many packed bytes may unpack to.
+    pub fn max_unpacked(&self, packed: usize) -> u64 {
+        let by_ratio = (packed as u64).saturating_mul(self.max_unpack_ratio);
+        by_ratio.max(Self::UNPACK_FREELY).min(self.max_file_bytes)
+    }
 }
 
 impl Default for Limits {
@@ -23,6 +36,8 @@ impl Default for Limits {
             max_nesting: 256,
             max_mesh_elements: 1 << 28,
             max_pixels: 1 << 28,
+            // Scenes pack ten to one, the emptiest meshes fifty to one; a bomb packs a thousand to one.
+            max_unpack_ratio: 100,
         }
     }
 }

@@ -13,25 +13,40 @@ const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 
 /// Reads a whole file, unpacking gzip whatever its name is.
 ///
+/// What a scene asks for must be a regular file: a pipe into which nobody writes would hold the render up for ever. What a
+/// person names (`at` is nowhere) may be anything that can be read.
+///
 /// # Errors
-/// [`SceneError::Read`], or [`SceneError::Limit`] when it is, or unpacks to, more than `limits.max_file_bytes`.
+/// [`SceneError::Read`], or [`SceneError::Limit`] when it is, or unpacks to, more than the limits allow.
 pub fn read_bytes(path: &Path, limits: &Limits, at: Span) -> Result<Vec<u8>, SceneError> {
     let failed = |source| SceneError::Read { path: path.to_owned(), source, at };
+    let kind = std::fs::metadata(path).map_err(failed)?;
+    if kind.is_dir() || (!at.is_none() && !kind.is_file()) {
+        return Err(failed(io::Error::other("it is not a file")));
+    }
     let mut file = File::open(path).map_err(failed)?;
-    let size = file.metadata().map_err(failed)?.len();
-    check_size(path, size, limits, at)?;
+    check_size(path, kind.len(), limits.max_file_bytes, at)?;
 
     // A pipe or device has no size, so what it yields is counted as it comes.
-    let mut bytes = Vec::with_capacity(size as usize);
-    read_capped(&mut file, &mut bytes, limits).map_err(failed)?;
-    check_size(path, bytes.len() as u64, limits, at)?;
+    let mut bytes = Vec::with_capacity(kind.len() as usize);
+    read_capped(&mut file, &mut bytes, limits.max_file_bytes).map_err(failed)?;
+    check_size(path, bytes.len() as u64, limits.max_file_bytes, at)?;
+    unpack(path, bytes, limits, at)
+}
+
+/// Unpacks gzip; anything else stays as it is.
+///
+/// # Errors
+/// As [`read_bytes`].
+pub fn unpack(path: &Path, bytes: Vec<u8>, limits: &Limits, at: Span) -> Result<Vec<u8>, SceneError> {
     if !bytes.starts_with(&GZIP_MAGIC) {
         return Ok(bytes);
     }
-
+    let most = limits.max_unpacked(bytes.len());
     let mut unpacked = Vec::new();
-    read_capped(&mut MultiGzDecoder::new(&*bytes), &mut unpacked, limits).map_err(failed)?;
-    check_size(path, unpacked.len() as u64, limits, at)?;
+    read_capped(&mut MultiGzDecoder::new(&*bytes), &mut unpacked, most)
+        .map_err(|source| SceneError::Read { path: path.to_owned(), source, at })?;
+    check_size(path, unpacked.len() as u64, most, at)?;
     Ok(unpacked)
 }
 
@@ -59,28 +74,28 @@ pub fn read_text(
 pub(crate) fn read_start(path: &Path, limits: &Limits, at: Span) -> Result<Vec<u8>, SceneError> {
     const ENOUGH: u64 = 4096;
     let failed = |source| SceneError::Read { path: path.to_owned(), source, at };
-    let few = Limits { max_file_bytes: ENOUGH.min(limits.max_file_bytes), ..*limits };
+    let few = ENOUGH.min(limits.max_file_bytes);
     let mut start = Vec::new();
-    read_capped(&mut File::open(path).map_err(failed)?, &mut start, &few).map_err(failed)?;
+    read_capped(&mut File::open(path).map_err(failed)?, &mut start, few).map_err(failed)?;
     if start.starts_with(&GZIP_MAGIC) {
         let packed = std::mem::take(&mut start);
         // The packed bytes end early here: what came out before is enough.
-        let _ = read_capped(&mut MultiGzDecoder::new(&*packed), &mut start, &few);
+        let _ = read_capped(&mut MultiGzDecoder::new(&*packed), &mut start, few);
     }
     Ok(start)
 }
 
 /// Reads to the end, or to one byte past the limit.
-pub(crate) fn read_capped(from: &mut impl Read, to: &mut Vec<u8>, limits: &Limits) -> io::Result<usize> {
-    from.take(limits.max_file_bytes.saturating_add(1)).read_to_end(to)
+fn read_capped(from: &mut impl Read, to: &mut Vec<u8>, most: u64) -> io::Result<usize> {
+    from.take(most.saturating_add(1)).read_to_end(to)
 }
 
-fn check_size(path: &Path, size: u64, limits: &Limits, at: Span) -> Result<(), SceneError> {
-    if size <= limits.max_file_bytes {
+fn check_size(path: &Path, found: u64, limit: u64, at: Span) -> Result<(), SceneError> {
+    if found <= limit {
         return Ok(());
     }
     let what = format!("size in bytes of `{}`", path.display());
-    Err(SceneError::Limit { what, found: size, limit: limits.max_file_bytes, at })
+    Err(SceneError::Limit { what, found, limit, at })
 }
 
 /// The folders in which a scene's relative file names are looked up, in order.

@@ -4,7 +4,7 @@
 //! 4), counts of vertices and triangles (64 bits), positions, normals, texture coordinates, colours, indices. The file
 //! ends with the offset of every mesh (32 bits in version 3, 64 in version 4) and their number. All is little-endian.
 
-use std::io::Read;
+use std::io::{Read, Take};
 use std::path::Path;
 
 use aureole_desc::{Attribute, AttributeDomain, Limits, Mesh, SceneError, Span};
@@ -50,7 +50,8 @@ pub fn decode(bytes: &[u8], index: usize, limits: &Limits) -> Result<SerializedM
     let version = header_version(bytes)?;
     let packed = locate(bytes, index, version)?;
     let version = header_version(packed)?;
-    let mut stream = Stream { unpack: ZlibDecoder::new(&packed[4..]) };
+    let most = limits.max_unpacked(packed.len());
+    let mut stream = Stream { unpack: ZlibDecoder::new(&packed[4..]).take(most), most };
 
     let flags = u32::from_le_bytes(stream.array()?);
     let name = if version == 4 { stream.string()? } else { String::new() };
@@ -108,7 +109,9 @@ fn locate(bytes: &[u8], index: usize, version: u16) -> Result<&[u8], MeshError> 
 
 /// An unpacking stream of little-endian values.
 struct Stream<'a> {
-    unpack: ZlibDecoder<&'a [u8]>,
+    unpack: Take<ZlibDecoder<&'a [u8]>>,
+    /// Bytes that it may unpack to.
+    most: u64,
 }
 
 impl Stream<'_> {
@@ -120,6 +123,10 @@ impl Stream<'_> {
             .take(size as u64)
             .read_to_end(&mut bytes)
             .map_err(|error| MeshError::content(format!("cannot unpack: {error}")))?;
+        if bytes.len() < size && self.unpack.limit() == 0 {
+            let what = "unpacked size in bytes".to_owned();
+            return Err(MeshError::Limit { what, found: self.most + 1, limit: self.most });
+        }
         if bytes.len() < size {
             return Err(MeshError::content(format!(
                 "ends early: {size} bytes expected, found {}",
