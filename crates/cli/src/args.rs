@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use aureole::image::{Format, ToneCurve};
 use clap::builder::PossibleValuesParser;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 
 /// Renders scenes by following light.
 ///
@@ -80,6 +80,24 @@ pub(crate) struct LimitArgs {
     /// Includes within includes
     #[arg(long, value_name = "N", help_heading = "Limits")]
     pub max_include_depth: Option<usize>,
+    /// Files that a scene's text is spread over
+    #[arg(long, value_name = "N", help_heading = "Limits")]
+    pub max_files: Option<u64>,
+    /// Objects within objects, textures or materials that refer to each other
+    #[arg(long, value_name = "N", help_heading = "Limits")]
+    pub max_nesting: Option<usize>,
+    /// Parameters of one element
+    #[arg(long, value_name = "N", help_heading = "Limits")]
+    pub max_params: Option<usize>,
+    /// Textures or materials that one of them asks when it is evaluated
+    #[arg(long, value_name = "N", help_heading = "Limits")]
+    pub max_evaluations: Option<u64>,
+    /// Bytes that a packed byte may unpack to, in large files
+    #[arg(long, value_name = "N", help_heading = "Limits")]
+    pub max_unpack_ratio: Option<u64>,
+    /// Memory that the render may take by estimate, such as 4GiB [default: what is free]
+    #[arg(long, value_name = "SIZE", value_parser = bytes, help_heading = "Limits")]
+    pub memory_limit: Option<u64>,
 }
 
 /// How loud to be.
@@ -88,9 +106,9 @@ pub(crate) struct Loudness {
     /// Say nothing but errors
     #[arg(short, long, help_heading = "Messages", conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Say more: all warnings, where the time goes
-    #[arg(short, long, help_heading = "Messages")]
-    pub verbose: bool,
+    /// Say more: all warnings, where the time goes; -vv what is done, -vvv everything
+    #[arg(short, long, action = ArgAction::Count, help_heading = "Messages")]
+    pub verbose: u8,
 }
 
 /// `aureole render`
@@ -147,6 +165,12 @@ pub(crate) struct RenderArgs {
     /// How colour travels
     #[arg(long, default_value = "rgb", help_heading = "Sampling")]
     pub color: Color,
+    /// Render nothing: print how one sample of a pixel comes about, vertex by vertex (sample 0 unless given)
+    #[arg(long, value_name = "X,Y[,SAMPLE]", help_heading = "Messages")]
+    pub debug_pixel: Option<PixelArg>,
+    /// Messages, progress and log as JSON objects, one a line, on standard error
+    #[arg(long, help_heading = "Messages")]
+    pub json: bool,
     /// Print figures on standard output when done, instead of a line on standard error
     #[arg(long, value_name = "FORMAT", help_heading = "Messages")]
     pub stats: Option<StatsFormat>,
@@ -327,6 +351,27 @@ impl FromStr for Size {
     }
 }
 
+/// A pixel of the whole image, and one of its samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PixelArg {
+    pub x: u32,
+    pub y: u32,
+    pub sample: u32,
+}
+
+impl FromStr for PixelArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<u32>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+        match numbers.as_deref() {
+            Ok(&[x, y]) => Ok(Self { x, y, sample: 0 }),
+            Ok(&[x, y, sample]) => Ok(Self { x, y, sample }),
+            _ => Err("it must look like 12,40 or 12,40,3".to_owned()),
+        }
+    }
+}
+
 /// Four numbers that bound a part of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Corners(pub [f64; 4]);
@@ -356,6 +401,22 @@ fn seconds(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "it must be a positive number of seconds".to_owned())
 }
 
+/// A number of bytes: `500MB`, `4GiB`, `4g`.
+fn bytes(text: &str) -> Result<u64, String> {
+    let text = text.trim();
+    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let (number, unit) = text.split_at(digits);
+    let unit = unit.trim().to_lowercase();
+    let size = ["", "k", "m", "g", "t"]
+        .iter()
+        .position(|prefix| [prefix.to_string(), format!("{prefix}b"), format!("{prefix}ib")].contains(&unit));
+    let base: f64 = if unit.len() == 2 { 1000.0 } else { 1024.0 };
+    match (number.parse::<f64>(), size) {
+        (Ok(number), Some(power)) if number > 0.0 => Ok((number * base.powi(power as i32)) as u64),
+        _ => Err("it must look like 4GiB, 500MB or 2g".to_owned()),
+    }
+}
+
 fn image_format(text: &str) -> Result<Format, String> {
     let format = Format::from_suffix(text.trim_start_matches('.')).map_err(|error| error.to_string())?;
     format.writable().then_some(format).ok_or_else(|| format!("`{text}` files can be read, not written"))
@@ -377,10 +438,22 @@ mod tests {
     }
 
     #[test]
+    fn bytes_have_units() {
+        assert_eq!(bytes("4GiB"), Ok(4 << 30));
+        assert_eq!(bytes("1.5k"), Ok(1536));
+        assert_eq!(bytes("500 MB"), Ok(500_000_000));
+        assert_eq!(bytes("123"), Ok(123));
+        assert!(bytes("4 potatoes").is_err() && bytes("-4G").is_err() && bytes("").is_err());
+    }
+
+    #[test]
     fn sizes_and_corners_are_read() {
         assert_eq!("640x480".parse(), Ok(Size { width: 640, height: 480 }));
         assert!("640".parse::<Size>().is_err() && "0x4".parse::<Size>().is_err());
         assert_eq!("0,0.25,1,0.75".parse(), Ok(Corners([0.0, 0.25, 1.0, 0.75])));
+        assert_eq!("3,4".parse(), Ok(PixelArg { x: 3, y: 4, sample: 0 }));
+        assert_eq!("3, 4, 5".parse(), Ok(PixelArg { x: 3, y: 4, sample: 5 }));
+        assert!("3".parse::<PixelArg>().is_err() && "3,-4".parse::<PixelArg>().is_err());
         assert!("0,1,2".parse::<Corners>().is_err() && "-1,0,1,1".parse::<Corners>().is_err());
     }
 }

@@ -14,9 +14,13 @@ const SHOWN: usize = 20;
 /// Longer lines are cut around what is wrong with them: a mesh may be a single line of many megabytes.
 const EXCERPT: usize = 100;
 
-/// Writes messages to standard error; with colours if that is a terminal and `NO_COLOR` is not set.
-pub(crate) struct Painter {
-    handler: GraphicalReportHandler,
+/// Writes messages to standard error: for people, with colours if that is a terminal and `NO_COLOR` is not set, or for
+/// programs, one JSON object a line.
+pub(crate) enum Painter {
+    /// For people.
+    Picture(GraphicalReportHandler),
+    /// For programs.
+    Json,
 }
 
 impl Painter {
@@ -31,7 +35,7 @@ impl Painter {
         };
         // Scripts and logs want a message on one line, however long it is.
         let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(1).with_links(false);
-        Self { handler: if is_terminal { handler } else { handler.with_wrap_lines(false) } }
+        Self::Picture(if is_terminal { handler } else { handler.with_wrap_lines(false) })
     }
 
     /// An error that has no place.
@@ -40,8 +44,8 @@ impl Painter {
     }
 
     /// A warning that has no place.
-    pub(crate) fn warning(&self, message: &str) {
-        self.paint(&Message::new(Severity::Warning, message, None));
+    pub(crate) fn warning(&self, message: &str, help: Option<&str>) {
+        self.paint(&Message::new(Severity::Warning, message, help.map(str::to_owned)));
     }
 
     /// Errors of a scene.
@@ -54,7 +58,7 @@ impl Painter {
         let message = |error: &SceneError| {
             Message::new(Severity::Error, error.to_string(), error.help()).at(error.span(), sources)
         };
-        self.paint_some(errors.into_iter().map(message).collect(), "errors", show_all);
+        self.paint_some(errors, message, "errors", show_all);
     }
 
     /// Warnings about a scene, as what they are or as errors.
@@ -62,22 +66,35 @@ impl Painter {
         let message = |warning: &Warning| {
             Message::new(severity, &warning.message, warning.help.clone()).at(warning.at, sources)
         };
-        self.paint_some(report.warnings.iter().map(message).collect(), "warnings", show_all);
+        self.paint_some(&report.warnings, message, "warnings", show_all);
     }
 
-    fn paint_some(&self, messages: Vec<Message>, what: &str, show_all: bool) {
-        let shown = if show_all { messages.len() } else { messages.len().min(SHOWN) };
-        messages[..shown].iter().for_each(|message| self.paint(message));
-        if shown < messages.len() {
-            let more = format!("{} more {what} are not shown; `-v` shows all", messages.len() - shown);
+    /// Paints the first messages and only counts the others: places in large files take time to find.
+    fn paint_some<T>(
+        &self,
+        items: impl IntoIterator<Item = T>,
+        message: impl Fn(T) -> Message,
+        what: &str,
+        show_all: bool,
+    ) {
+        let mut items = items.into_iter();
+        let shown = if show_all { usize::MAX } else { SHOWN };
+        items.by_ref().take(shown).for_each(|item| self.paint(&message(item)));
+        let more = items.count();
+        if more > 0 {
+            let more = format!("{more} more {what} are not shown; `-v` shows all");
             self.paint(&Message::new(Severity::Advice, more, None));
         }
     }
 
     fn paint(&self, message: &Message) {
         let mut text = String::new();
-        if self.handler.render_report(&mut text, message).is_err() {
-            text = format!("{message}\n");
+        match self {
+            Self::Json => text = message.to_json() + "\n",
+            Self::Picture(handler) if handler.render_report(&mut text, message).is_err() => {
+                text = format!("{message}\n");
+            }
+            Self::Picture(_) => {}
         }
         // Nobody is left to tell when standard error is closed.
         let _ = std::io::stderr().write_all(text.trim_start_matches('\n').as_bytes());
@@ -105,6 +122,24 @@ impl Message {
             self.text = format!("{}: {}", path.display(), self.text);
         }
         self
+    }
+
+    fn to_json(&self) -> String {
+        let place = self.excerpt.as_ref();
+        let event = match self.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Advice => "advice",
+        };
+        serde_json::json!({
+            "event": event,
+            "message": self.text,
+            "help": self.help,
+            "file": place.map(|place| &place.file),
+            "line": place.map(|place| place.line),
+            "column": place.map(|place| place.column),
+        })
+        .to_string()
     }
 }
 

@@ -6,6 +6,7 @@ mod args;
 mod command;
 mod diagnostics;
 mod exit;
+mod log;
 mod memory;
 mod output;
 mod progress;
@@ -17,13 +18,20 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::args::{Cli, Command};
+use crate::args::{Cli, Command, Loudness};
 use crate::diagnostics::Painter;
 use crate::exit::Failure;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let painter = Painter::for_terminal();
+    let (loudness, json) = match &cli.command {
+        Command::Render(args) => (args.loudness, args.json),
+        Command::Info(args) => (args.loudness, false),
+        Command::Gallery(args) => (args.loudness, false),
+        Command::List(_) | Command::Diff(_) => (Loudness::default(), false),
+    };
+    log::start(loudness, json);
+    let painter = if json { Painter::Json } else { Painter::for_terminal() };
     let result = match &cli.command {
         Command::Render(args) => command::render::run(args, &painter),
         Command::Info(args) => command::info::run(args, &painter),

@@ -1,6 +1,6 @@
-//! The progress line: only on a terminal, and on standard error, so that it never ends up in a file.
+//! Progress: a bar, only on a terminal and on standard error, so that it never ends up in a file; or lines for programs.
 
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
@@ -9,30 +9,43 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::signals::Signals;
 
-/// Milliseconds between two updates of the line.
-const INTERVAL: u64 = 100;
+/// Milliseconds between two updates of the bar, and between two lines for programs.
+const BAR_INTERVAL: u64 = 100;
+const LINE_INTERVAL: u64 = 1000;
 /// The bar's length stands for this many steps.
 const STEPS: u64 = 1000;
+
+/// How progress is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Show {
+    /// Not at all.
+    Nothing,
+    /// A bar, if somebody can see it.
+    Bar,
+    /// A JSON object a line.
+    Lines,
+}
 
 /// Shows a render's progress and lets signals end it.
 pub(crate) struct Watch {
     signals: Signals,
     bar: Option<ProgressBar>,
+    lines: bool,
     /// When a time limit decides rather than the number of samples.
     time: Option<Duration>,
     last_update: AtomicU64,
 }
 
 impl Watch {
-    /// Watches for signals; shows a line if wanted and if somebody can see it.
-    pub(crate) fn new(signals: Signals, show: bool, time: Option<Duration>) -> Self {
-        let bar = (show && std::io::stderr().is_terminal()).then(|| {
+    /// Watches for signals; shows progress as wanted.
+    pub(crate) fn new(signals: Signals, show: Show, time: Option<Duration>) -> Self {
+        let bar = (show == Show::Bar && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
             let style = ProgressStyle::with_template("{bar:30.cyan/dim} {percent:>3} %  {msg}");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("━━─"));
             bar
         });
-        Self { signals, bar, time, last_update: AtomicU64::new(0) }
+        Self { signals, bar, lines: show == Show::Lines, time, last_update: AtomicU64::new(0) }
     }
 
     /// Takes the line away.
@@ -51,11 +64,15 @@ impl Watch {
 
 impl Observer for Watch {
     fn progress(&self, progress: &Progress) {
-        let Some(bar) = &self.bar else { return };
-        // Workers report after every tile: one of them, now and then, moves the line.
+        let interval = match (&self.bar, self.lines) {
+            (Some(_), _) => BAR_INTERVAL,
+            (None, true) => LINE_INTERVAL,
+            (None, false) => return,
+        };
+        // Workers report after every tile: one of them, now and then, moves the bar.
         let now = progress.elapsed.as_millis() as u64;
         let last = self.last_update.load(Ordering::Relaxed);
-        let is_due = now >= last + INTERVAL
+        let is_due = now >= last + interval
             && self.last_update.compare_exchange(last, now, Ordering::Relaxed, Ordering::Relaxed).is_ok();
         if !is_due {
             return;
@@ -63,18 +80,36 @@ impl Observer for Watch {
         let done = self.done(progress);
         let seconds = progress.elapsed.as_secs_f64().max(1e-9);
         let left = if done > 0.0 { seconds * (1.0 - done) / done } else { f64::INFINITY };
-        bar.set_position((done * STEPS as f64) as u64);
-        bar.set_message(format!(
-            "{}samples/s  {}rays/s  {} left",
-            quantity(progress.samples_done as f64 / seconds),
-            quantity(progress.rays as f64 / seconds),
-            duration(left),
-        ));
+        match &self.bar {
+            Some(bar) => {
+                bar.set_position((done * STEPS as f64) as u64);
+                bar.set_message(format!(
+                    "{}samples/s  {}rays/s  {} left",
+                    quantity(progress.samples_done as f64 / seconds),
+                    quantity(progress.rays as f64 / seconds),
+                    duration(left),
+                ));
+            }
+            None => print_line(&serde_json::json!({
+                "event": "progress",
+                "done": done,
+                "samples": progress.samples_done,
+                "rays": progress.rays,
+                "seconds": seconds,
+                "seconds_left": left.is_finite().then_some(left),
+            })),
+        }
     }
 
     fn should_stop(&self) -> bool {
         self.signals.received().is_some()
     }
+}
+
+/// Writes an object as a line of standard error.
+pub(crate) fn print_line(object: &serde_json::Value) {
+    // Nobody is left to tell when standard error is closed.
+    let _ = writeln!(std::io::stderr().lock(), "{object}");
 }
 
 /// A number with a metric prefix, three digits long: `1.23 M`. A unit follows directly.

@@ -3,14 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use aureole::desc::{Limits, Report, SceneDesc, SceneError, Sources, Value};
+use aureole::desc::{Limits, Report, SceneDesc, SceneError, Sources, Span, Value};
 use aureole::formats::{GALLERY, GalleryScene, LoadOptions, load};
-use aureole::scene::{CompileOptions, Scene, compile};
+use aureole::render::MemoryEstimate;
+use aureole::scene::{CompileOptions, Film, Scene, compile};
 use miette::Severity;
 
 use crate::args::{LimitArgs, Loudness, SceneArgs};
 use crate::diagnostics::Painter;
 use crate::exit::{self, Exit, Failure};
+use crate::memory;
+use crate::progress::quantity;
 use crate::window;
 
 /// Scenes that come with the program are named like this.
@@ -24,6 +27,10 @@ pub(crate) struct Session {
     pub scene: Scene,
     /// Warnings on the way.
     pub report: Report,
+    /// The files, for places in messages.
+    pub sources: Sources,
+    /// The memory that it was expected to take, with its render.
+    pub estimate: MemoryEstimate,
     /// Seconds spent on reading.
     pub load_seconds: f64,
     /// Seconds spent on building.
@@ -100,7 +107,7 @@ impl From<SceneError> for Problem {
 pub(crate) fn open(args: &SceneArgs, loudness: Loudness, painter: &Painter) -> Result<Session, Failure> {
     let (mut sources, mut report) = (Sources::default(), Report::default());
     let session = read_and_compile(args, &mut sources, &mut report);
-    let show_all = loudness.verbose;
+    let show_all = loudness.verbose > 0;
     let is_strict = args.strict && !report.warnings.is_empty();
     if is_strict || !loudness.quiet {
         let severity = if is_strict { Severity::Error } else { Severity::Warning };
@@ -119,7 +126,7 @@ pub(crate) fn open(args: &SceneArgs, loudness: Loudness, painter: &Painter) -> R
             painter.error("warnings are errors with `--strict`", None);
             Err(Failure::Shown(Exit::Scene))
         }
-        Ok(session) => Ok(Session { report, ..session }),
+        Ok(session) => Ok(Session { report, sources, ..session }),
     }
 }
 
@@ -140,13 +147,38 @@ fn read_and_compile(
     window::apply(args, &mut desc).map_err(Problem::usage)?;
     let load_seconds = start.elapsed().as_secs_f64();
 
+    let film = Film::of(&desc, &limits)?;
+    let estimate = MemoryEstimate::new(&desc, film.crop.width, film.crop.height);
+    check_memory(&estimate, args.limits.memory_limit)?;
+
     let start = Instant::now();
     let options = CompileOptions { camera: args.camera, limits, ..CompileOptions::default() };
     let scene = compile(&desc, &options, report)?;
     aureole::render::integrator::check_parameters(&scene, report);
+    desc.release_bulk();
     let build_seconds = start.elapsed().as_secs_f64();
-    let report = Report::default(); // the caller's comes in its place
-    Ok(Session { desc, scene, report, load_seconds, build_seconds, stem: origin.stem() })
+    tracing::info!(load_seconds, build_seconds, "scene ready");
+    // The caller's come in their places.
+    let (report, sources) = (Report::default(), Sources::default());
+    Ok(Session { desc, scene, report, sources, estimate, load_seconds, build_seconds, stem: origin.stem() })
+}
+
+/// Refuses what would be killed later.
+fn check_memory(estimate: &MemoryEstimate, limit: Option<u64>) -> Result<(), Problem> {
+    let needed = estimate.peak();
+    let Some(allowed) = limit.or_else(memory::available) else { return Ok(()) };
+    if needed <= allowed {
+        return Ok(());
+    }
+    let why = if limit.is_some() { "`--memory-limit` allows" } else { "there are only" };
+    let message = format!(
+        "this render needs about {}B of memory ({}B of them for the scene, {}B for the image), {why} {}B",
+        quantity(needed as f64),
+        quantity((estimate.shapes + estimate.acceleration + estimate.textures) as f64),
+        quantity(estimate.film as f64),
+        quantity(allowed as f64),
+    );
+    Err(Problem { error: SceneError::invalid(message, Span::NONE), exit: Exit::Limit })
 }
 
 fn limits(args: &LimitArgs) -> Limits {
@@ -156,7 +188,11 @@ fn limits(args: &LimitArgs) -> Limits {
         max_file_bytes: args.max_file_bytes.unwrap_or(default.max_file_bytes),
         max_mesh_elements: args.max_mesh_elements.unwrap_or(default.max_mesh_elements),
         max_include_depth: args.max_include_depth.unwrap_or(default.max_include_depth),
-        ..default
+        max_files: args.max_files.unwrap_or(default.max_files),
+        max_nesting: args.max_nesting.unwrap_or(default.max_nesting),
+        max_params: args.max_params.unwrap_or(default.max_params),
+        max_evaluations: args.max_evaluations.unwrap_or(default.max_evaluations),
+        max_unpack_ratio: args.max_unpack_ratio.unwrap_or(default.max_unpack_ratio),
     }
 }
 

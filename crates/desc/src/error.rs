@@ -137,6 +137,22 @@ impl SceneError {
         }
     }
 
+    /// A [`SceneError::UnknownName`] that remembers the nearest of the known names, and the first few of many.
+    pub fn unknown_name<'a>(
+        what: &'static str,
+        name: &str,
+        known: impl Iterator<Item = &'a str> + Clone,
+        at: Span,
+    ) -> Self {
+        const FEW: usize = 24;
+        let mut shown: Vec<&str> = suggest(name, known.clone()).into_iter().collect();
+        let mut sorted: Vec<&str> = known.filter(|other| !shown.contains(other)).collect();
+        sorted.sort_unstable();
+        shown.extend(sorted.into_iter().take(FEW));
+        let known = shown.into_iter().map(str::to_owned).collect();
+        Self::UnknownName { what, name: name.to_owned(), known, at }
+    }
+
     /// A [`SceneError::Invalid`].
     pub fn invalid(message: impl Into<String>, at: Span) -> Self {
         Self::Invalid { message: message.into(), at }

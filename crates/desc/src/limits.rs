@@ -1,14 +1,22 @@
 //! What a file may ask for.
 
+use crate::{SceneError, Span};
+
 /// Limits that readers check before they allocate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Bytes of one file after decompression.
     pub max_file_bytes: u64,
+    /// Files that a scene's text is spread over.
+    pub max_files: u64,
     /// Nested includes.
     pub max_include_depth: usize,
     /// Nested objects or attribute blocks.
     pub max_nesting: usize,
+    /// Parameters of one element.
+    pub max_params: usize,
+    /// Textures or materials that one of them asks when it is evaluated, each counted as often as it is asked.
+    pub max_evaluations: u64,
     /// Vertices or triangles of one mesh.
     pub max_mesh_elements: u64,
     /// Pixels of an image, rendered or read.
@@ -18,6 +26,18 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Checks the number of parameters of an element that is being read.
+    ///
+    /// # Errors
+    /// [`SceneError::Limit`].
+    pub fn check_params(&self, found: usize, at: Span) -> Result<(), SceneError> {
+        if found <= self.max_params {
+            return Ok(());
+        }
+        let what = "the number of parameters of an element".to_owned();
+        Err(SceneError::Limit { what, found: found as u64, limit: self.max_params as u64, at })
+    }
+
     /// Bytes that any packed file may unpack to: it is the large ones that hurt.
     pub const UNPACK_FREELY: u64 = 16 << 20;
 
@@ -32,8 +52,11 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             max_file_bytes: 4 << 30,
+            max_files: 1 << 16,
             max_include_depth: 64,
             max_nesting: 256,
+            max_params: 4096,
+            max_evaluations: 1 << 14,
             max_mesh_elements: 1 << 28,
             max_pixels: 1 << 28,
             // Scenes pack ten to one, the emptiest meshes fifty to one; a bomb packs a thousand to one.

@@ -99,6 +99,16 @@ impl Params {
         self.get(name).is_some()
     }
 
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
     /// All parameters in the order in which they were written.
     pub fn iter(&self) -> impl Iterator<Item = &Param> {
         self.list.iter()
@@ -107,6 +117,18 @@ impl Params {
     /// Where a parameter was written, or [`Span::NONE`].
     pub fn span(&self, name: &str) -> Span {
         self.list.iter().find(|p| p.name == name).map_or(Span::NONE, |p| p.span)
+    }
+
+    /// Makes meshes and lists empty.
+    pub(crate) fn release_bulk(&mut self) {
+        for param in &mut self.list {
+            match &mut param.value {
+                Value::Mesh(mesh) => *mesh = Arc::default(),
+                Value::Floats(list) => *list = Arc::default(),
+                Value::Ints(list) => *list = Arc::default(),
+                _ => {}
+            }
+        }
     }
 
     /// Takes note of a parameter and gives it.

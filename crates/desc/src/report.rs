@@ -1,5 +1,7 @@
 //! Warnings for the user, collected on the way.
 
+use std::collections::HashSet;
+
 use crate::{SceneError, Span};
 
 /// Something that people should know but that does not stop a render.
@@ -20,9 +22,26 @@ pub struct Report {
     pub warnings: Vec<Warning>,
     /// Errors found after which reading went on, so that people see several at once.
     pub errors: Vec<SceneError>,
+    /// What was warned about where: a broken file may give rise to many thousand warnings.
+    warned: HashSet<(String, Span)>,
 }
 
 impl Report {
+    /// Errors that are collected before reading stops.
+    pub const MAX_ERRORS: usize = 100;
+
+    /// Adds an error after which reading can go on.
+    ///
+    /// # Errors
+    /// The error itself, where there are too many already: a file with a hundred mistakes is another kind of file.
+    pub fn collect(&mut self, error: SceneError) -> Result<(), SceneError> {
+        if self.errors.len() >= Self::MAX_ERRORS {
+            return Err(error);
+        }
+        self.errors.push(error);
+        Ok(())
+    }
+
     /// Adds a warning; the same one at the same place is kept once.
     pub fn warn(&mut self, message: impl Into<String>, at: Span) {
         self.warn_with_help(message, None, at);
@@ -30,9 +49,9 @@ impl Report {
 
     /// Adds a warning that says how to mend it.
     pub fn warn_with_help(&mut self, message: impl Into<String>, help: Option<String>, at: Span) {
-        let warning = Warning { message: message.into(), help, at };
-        if !self.warnings.contains(&warning) {
-            self.warnings.push(warning);
+        let message = message.into();
+        if self.warned.insert((message.clone(), at)) {
+            self.warnings.push(Warning { message, help, at });
         }
     }
 }

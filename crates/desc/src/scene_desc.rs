@@ -49,6 +49,12 @@ impl SceneDesc {
         self.nodes.is_empty()
     }
 
+    /// Lets go of meshes and long lists. What a scene was compiled from needs them no more, but names and places are still
+    /// wanted for messages.
+    pub fn release_bulk(&mut self) {
+        self.nodes.iter_mut().for_each(|node| node.params.release_bulk());
+    }
+
     /// The root slot that a `--set` path's first word names.
     fn slot(&mut self, family: &str) -> Option<(Family, &mut Option<NodeId>)> {
         match family {

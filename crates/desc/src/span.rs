@@ -1,7 +1,10 @@
 //! Where in which file something was written.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+use crate::{Limits, SceneError};
 
 /// Names a file in [`Sources`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -71,12 +74,39 @@ impl std::fmt::Display for Location {
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     files: Vec<SourceFile>,
+    paths: BTreeSet<PathBuf>,
+    text_bytes: u64,
+    distinct_text_bytes: u64,
 }
 
 impl Sources {
     /// Adds a text file.
     pub fn add_text(&mut self, path: impl Into<PathBuf>, text: impl Into<Arc<str>>) -> SourceId {
-        self.add(SourceFile { path: path.into(), text: Some(text.into()) })
+        let (path, text) = (path.into(), text.into());
+        let bytes = text.len() as u64;
+        self.text_bytes += bytes;
+        if self.paths.insert(path.clone()) {
+            self.distinct_text_bytes += bytes;
+        }
+        self.add(SourceFile { path, text: Some(text) })
+    }
+
+    /// Checks that there are not too many files, and that including some of them again and again has not made far more text
+    /// of a few small ones.
+    ///
+    /// # Errors
+    /// [`SceneError::Limit`], at the place that asked for the last file.
+    pub fn check(&self, limits: &Limits, at: Span) -> Result<(), SceneError> {
+        let most = limits.max_unpacked(self.distinct_text_bytes as usize);
+        for (what, found, limit) in [
+            ("the number of files of a scene", self.files.len() as u64, limits.max_files),
+            ("the text of all included files in bytes", self.text_bytes, most),
+        ] {
+            if found > limit {
+                return Err(SceneError::Limit { what: what.to_owned(), found, limit, at });
+            }
+        }
+        Ok(())
     }
 
     /// Adds a binary file: messages about it name the path only.
@@ -129,6 +159,21 @@ mod tests {
         assert_eq!(at(4), (2, 1));
         assert_eq!(at(9), (2, 5));
         assert_eq!(at(1000), (3, 1));
+    }
+
+    #[test]
+    fn including_a_file_again_and_again_meets_a_limit() {
+        let limits = Limits { max_files: 1000, ..Limits::default() };
+        let text: Arc<str> = " ".repeat(1 << 20).into();
+        let most = |name: fn(usize) -> String| {
+            let mut sources = Sources::default();
+            (0..2000).find(|&i| {
+                sources.add_text(name(i), text.clone());
+                sources.check(&limits, Span::NONE).is_err()
+            })
+        };
+        assert_eq!(most(|_| "same".into()), Some(100), "a hundred times its size");
+        assert_eq!(most(|i| i.to_string()), Some(1000), "the limit of files");
     }
 
     #[test]

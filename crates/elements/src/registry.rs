@@ -69,6 +69,14 @@ macro_rules! registry {
                 }
             }
 
+            /// The name of a value's kind; `custom` for those that users of the library define.
+            pub fn kind(&self) -> &'static str {
+                match self {
+                    $(Self::$Variant(_) => $name,)*
+                    Self::Custom(_) => "custom",
+                }
+            }
+
             /// The manual of every built-in kind.
             pub fn manual() -> Vec<$crate::Manual> {
                 vec![$($crate::Manual::of::<$module::$Type>($name)),*]

@@ -31,6 +31,7 @@ pub fn read_bytes(path: &Path, limits: &Limits, at: Span) -> Result<Vec<u8>, Sce
     let mut bytes = Vec::with_capacity(kind.len() as usize);
     read_capped(&mut file, &mut bytes, limits.max_file_bytes).map_err(failed)?;
     check_size(path, bytes.len() as u64, limits.max_file_bytes, at)?;
+    tracing::debug!(path = %path.display(), bytes = bytes.len(), "file read");
     unpack(path, bytes, limits, at)
 }
 
@@ -67,7 +68,9 @@ pub fn read_text(
         Ok(text) => text.into(),
         Err(error) => String::from_utf8_lossy(error.as_bytes()).into(),
     };
-    Ok((sources.add_text(path, text.clone()), text))
+    let source = sources.add_text(path, text.clone());
+    sources.check(limits, at)?;
+    Ok((source, text))
 }
 
 /// The first bytes of a file (unpacked), enough to tell its format.

@@ -84,7 +84,7 @@ impl Corruptor {
 
     /// A random number below `n`, or 0 when there is none.
     fn below(&mut self, n: usize) -> usize {
-        (u64::from(self.rng.next_u32()) * n as u64 >> 32) as usize
+        ((u64::from(self.rng.next_u32()) * n as u64) >> 32) as usize
     }
 
     /// A random range of at most `longest` bytes.

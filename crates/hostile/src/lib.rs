@@ -2,7 +2,7 @@
 //! damaged a file is ([`targets`]).
 //!
 //! The same targets are driven by the tests of this crate (tens of thousands of damaged files, on every change), by
-//! libFuzzer (`fuzz/`, millions), and, through the program itself, by the tool `corrupt` over a folder of real files.
+//! libFuzzer (`fuzz/`, millions), and, through the whole program, by the tool `aureole-hostile` over a folder of real files.
 //!
 //! ```
 //! use aureole_hostile::{corrupt::Corruptor, samples, targets};

@@ -56,8 +56,11 @@ pub fn find(name: &str) -> Option<&'static Target> {
 /// Small, so that a fuzzer does not spend its time on filling memory.
 const LIMITS: Limits = Limits {
     max_file_bytes: 1 << 24,
+    max_files: 16,
     max_include_depth: 4,
     max_nesting: 64,
+    max_params: 64,
+    max_evaluations: 1 << 10,
     max_mesh_elements: 1 << 16,
     max_pixels: 1 << 18,
     max_unpack_ratio: 100,

@@ -57,26 +57,31 @@ pub struct FilmTile {
 }
 
 impl FilmTile {
+    /// Bytes that a pixel takes.
+    pub const BYTES_PER_PIXEL: usize = size_of::<PixelSum>();
+
     /// An empty tile.
     pub fn new(area: Crop) -> Self {
         let pixels = vec![PixelSum::default(); area.width as usize * area.height as usize];
         Self { area, pixels, dropped: 0 }
     }
 
-    /// Adds a sample to the pixel at a column and row of the tile; broken ones are left out and counted.
+    /// Adds a sample to the pixel at a column and row of the tile; broken ones are left out and counted. Tells whether it
+    /// was added.
     #[inline]
-    pub fn add(&mut self, x: u32, y: u32, radiance: Spectrum, filter_weight: f32) {
+    pub fn add(&mut self, x: u32, y: u32, radiance: Spectrum, filter_weight: f32) -> bool {
         let pixel = &mut self.pixels[(y * self.area.width + x) as usize];
         let rgb = radiance.rgb();
         if !rgb.iter().all(|c| c.abs() <= LARGEST) {
             self.dropped += 1;
-            return;
+            return false;
         }
         for (sum, c) in pixel.rgb.iter_mut().zip(rgb) {
             sum.add(c * filter_weight);
         }
         pixel.weight.add(filter_weight);
         pixel.samples += 1;
+        true
     }
 
     /// The estimate of a pixel: the weighted mean of its samples.

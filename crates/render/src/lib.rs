@@ -18,8 +18,11 @@
 
 mod film;
 pub mod integrator;
+mod memory;
 mod render;
+pub mod replay;
 
 pub use film::{ExactSum, FilmTile};
 pub use integrator::{Integrator, IntegratorManual, integrators};
-pub use render::{Observer, Progress, RenderOptions, RenderStats, Rendered, Silent, render};
+pub use memory::MemoryEstimate;
+pub use render::{Observer, Progress, RenderOptions, RenderStats, Rendered, SampleId, Silent, render};

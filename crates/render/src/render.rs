@@ -87,8 +87,21 @@ pub struct RenderStats {
     pub seconds: f64,
     /// Samples that were not finite and left out.
     pub non_finite: u64,
+    /// The first of them, by row, column and index: the same for any number of threads.
+    pub first_non_finite: Option<SampleId>,
     /// Whether all samples that were asked for were drawn.
     pub complete: bool,
+}
+
+/// Names a sample: its pixel in the whole image, and its index there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SampleId {
+    /// Row.
+    pub y: u32,
+    /// Column.
+    pub x: u32,
+    /// Index.
+    pub sample: u32,
 }
 
 /// Renders a scene.
@@ -113,6 +126,7 @@ pub fn render(
         limit: options.time,
         samples: AtomicU64::new(0),
         rays: AtomicU64::new(0),
+        first_non_finite: Mutex::new(None),
         stopped: AtomicBool::new(false),
     };
     let threads = match options.threads {
@@ -133,6 +147,7 @@ struct Job<'a> {
     limit: Option<Duration>,
     samples: AtomicU64,
     rays: AtomicU64,
+    first_non_finite: Mutex<Option<SampleId>>,
     stopped: AtomicBool,
 }
 
@@ -152,6 +167,11 @@ impl Job<'_> {
                 self.work(&tiles, &next_tile, first, count);
             });
             first += count;
+            tracing::debug!(
+                samples_per_pixel = first,
+                seconds = self.start.elapsed().as_secs_f64(),
+                "pass done"
+            );
         }
         self.report();
         self.finish(tiles)
@@ -183,7 +203,8 @@ impl Job<'_> {
             for s in sample..sample + n {
                 for y in 0..tile.area.height {
                     for x in 0..tile.area.width {
-                        worker.push(self.start_path(tile.area.x + x, tile.area.y + y, s));
+                        let id = SampleId { x: tile.area.x + x, y: tile.area.y + y, sample: s };
+                        worker.push(start_path(self.scene, self.seed, id));
                     }
                 }
             }
@@ -192,7 +213,15 @@ impl Job<'_> {
             let rays = worker.batch.trace(self.integrator, self.scene, &worker.starts, &mut worker.radiance);
             for (i, radiance) in worker.radiance.iter().enumerate() {
                 let place = i as u32 % pixels;
-                tile.add(place % tile.area.width, place / tile.area.width, *radiance, worker.weights[i]);
+                let (x, y) = (place % tile.area.width, place / tile.area.width);
+                if !tile.add(x, y, *radiance, worker.weights[i]) {
+                    let id = SampleId {
+                        x: tile.area.x + x,
+                        y: tile.area.y + y,
+                        sample: sample + i as u32 / pixels,
+                    };
+                    self.note_non_finite(id);
+                }
             }
             self.samples.fetch_add(worker.starts.len() as u64, Ordering::Relaxed);
             self.rays.fetch_add(rays, Ordering::Relaxed);
@@ -200,17 +229,11 @@ impl Job<'_> {
         }
     }
 
-    /// The camera ray of a sample, and its weight from the filter.
-    #[inline]
-    fn start_path(&self, x: u32, y: u32, sample: u32) -> (PathStart, f32) {
-        let key = SampleKey::new(self.seed, x, y, sample);
-        let sampler = &self.scene.sampler;
-        let filter = self.scene.filter.sample(sampler.get_2d(key, 0));
-        let center = Point2::new(x as f32 + 0.5, y as f32 + 0.5);
-        let film = center + Vector2::new(filter.offset.x, filter.offset.y);
-        let camera_sample = CameraSample { film, lens: sampler.get_2d(key, 1), time: sampler.get_1d(key, 2) };
-        const { assert!(FIRST_FREE_DIMENSION == 3) };
-        (PathStart { ray: self.scene.camera.generate_ray(&camera_sample), key }, filter.weight)
+    /// Keeps the first of all samples that are not finite.
+    #[cold]
+    fn note_non_finite(&self, id: SampleId) {
+        let mut first = self.first_non_finite.lock().unwrap_or_else(PoisonError::into_inner);
+        *first = Some(first.map_or(id, |first| first.min(id)));
     }
 
     fn report(&self) {
@@ -249,8 +272,23 @@ impl Job<'_> {
         let complete = !self.stopped.load(Ordering::Relaxed);
         let rays = self.rays.load(Ordering::Relaxed);
         let seconds = self.start.elapsed().as_secs_f64();
-        Rendered { image, stats: RenderStats { samples, rays, seconds, non_finite, complete } }
+        let first_non_finite = *self.first_non_finite.lock().unwrap_or_else(PoisonError::into_inner);
+        let stats = RenderStats { samples, rays, seconds, non_finite, first_non_finite, complete };
+        Rendered { image, stats }
     }
+}
+
+/// The camera ray of a sample, and its weight from the filter.
+#[inline]
+pub(crate) fn start_path(scene: &Scene, seed: u64, id: SampleId) -> (PathStart, f32) {
+    let key = SampleKey::new(seed, id.x, id.y, id.sample);
+    let sampler = &scene.sampler;
+    let filter = scene.filter.sample(sampler.get_2d(key, 0));
+    let center = Point2::new(id.x as f32 + 0.5, id.y as f32 + 0.5);
+    let film = center + Vector2::new(filter.offset.x, filter.offset.y);
+    let camera_sample = CameraSample { film, lens: sampler.get_2d(key, 1), time: sampler.get_1d(key, 2) };
+    const { assert!(FIRST_FREE_DIMENSION == 3) };
+    (PathStart { ray: scene.camera.generate_ray(&camera_sample), key }, filter.weight)
 }
 
 /// A thread's memory, kept from batch to batch.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use aureole_accel::{Config, Geometry, World};
+use aureole_accel::{AccelError, Config, Geometry, World};
 use aureole_desc::{Family, Limits, Node, NodeId, Params, Report, SceneDesc, SceneError, Span, Value};
 use aureole_elements::{Camera, Filter, Light, Material, Resolver, Sampler, Shape, shape};
 use aureole_math::{Arena, Bounds3, Id, Point3, Transform, Vector3};
@@ -11,6 +11,7 @@ use rustc_hash::FxHashMap;
 
 use crate::film::Film;
 use crate::lights::LightPicker;
+use crate::origins::Origins;
 use crate::resolve::Resolve;
 use crate::scene::{Instance, Object, Scene};
 
@@ -32,8 +33,8 @@ pub struct CompileOptions {
 /// # Errors
 /// The first thing that is wrong; further ones are in the report.
 pub fn compile(desc: &SceneDesc, options: &CompileOptions, report: &mut Report) -> Result<Scene, SceneError> {
-    let film = Film::from_node(desc.film.map(|id| &desc[id]), &options.limits)?;
-    let resolve = Resolve::new(desc, report, film.full, options.limits.max_pixels);
+    let film = Film::of(desc, &options.limits)?;
+    let resolve = Resolve::new(desc, report, film.full, options.limits);
     let mut compiler = Compiler {
         resolve,
         options,
@@ -44,6 +45,7 @@ pub fn compile(desc: &SceneDesc, options: &CompileOptions, report: &mut Report) 
         unbounded: Vec::new(),
         default_material: None,
         begun_groups: Vec::new(),
+        origins: Origins::default(),
     };
     let world = compiler.world()?;
     compiler.lights()?;
@@ -68,10 +70,19 @@ struct Compiler<'a> {
     unbounded: Vec<Object>,
     default_material: Option<Id<Material>>,
     begun_groups: Vec<NodeId>,
+    origins: Origins,
 }
 
 fn default_node(family: Family, kind: &str) -> Node {
     Node::new(family, kind, Params::new(), Span::NONE)
+}
+
+/// The geometry that an accelerator complains about.
+fn geometry_of(error: &AccelError) -> Option<usize> {
+    match error {
+        AccelError::NonFinite { geometry, .. } | AccelError::BadIndex { geometry, .. } => Some(*geometry),
+        _ => None,
+    }
 }
 
 impl Compiler<'_> {
@@ -93,14 +104,15 @@ impl Compiler<'_> {
                 }
                 Ok(None) => {}
                 Err(error) if first_error.is_none() => first_error = Some(error),
-                Err(error) => self.resolve.report.errors.push(error),
+                Err(error) => self.resolve.report.collect(error)?,
             }
         }
         if let Some(error) = first_error {
             return Err(error);
         }
         World::build(geometries, level as u32, &self.options.accel).map_err(|error| {
-            SceneError::invalid(error.to_string(), spans.first().copied().unwrap_or(Span::NONE))
+            let at = geometry_of(&error).and_then(|geometry| spans.get(geometry));
+            SceneError::invalid(error.to_string(), at.copied().unwrap_or(Span::NONE))
         })
     }
 
@@ -174,6 +186,7 @@ impl Compiler<'_> {
             shape::Geometry::Unbounded => None,
         };
         let id = self.shapes.push(built);
+        self.origins.shapes.push(node);
         let mut params = desc[node].params.clone();
         let material = match params.try_node("bsdf")? {
             Some(bsdf) => self.resolve.material(bsdf)?,
@@ -223,6 +236,7 @@ impl Compiler<'_> {
         self.resolve.emitting_shape = Some(shape);
         let light = Light::build(&desc[node], &mut self.resolve);
         self.resolve.emitting_shape = None;
+        self.origins.lights.push(node);
         Ok(self.lights.push(light?))
     }
 
@@ -241,6 +255,7 @@ impl Compiler<'_> {
         for &node in &desc.lights {
             self.resolve.expect(node, Family::Light)?;
             let light = Light::build(&desc[node], &mut self.resolve)?;
+            self.origins.lights.push(node);
             self.lights.push(light);
         }
         if self.lights.is_empty() {
@@ -305,7 +320,9 @@ impl Compiler<'_> {
             self.levels.iter().flatten().any(|object| matches!(object, Object::Solid { alpha: Some(_), .. }));
         let environments =
             self.lights.iter().filter(|(_, light)| light.is_environment()).map(|(id, _)| id).collect();
+        let origins = Origins { materials: self.resolve.material_nodes(), ..self.origins };
         let mut scene = Scene {
+            origins,
             film,
             camera,
             filter,
@@ -322,6 +339,8 @@ impl Compiler<'_> {
             unbounded: self.unbounded,
             has_alpha,
         };
+        let counts = scene.counts();
+        tracing::debug!(counts.shapes, counts.primitives, counts.textures, counts.lights, "scene built");
         let context = scene.light_context(Wavelengths::RGB);
         let bounds = scene.world.bounds();
         let powers: Vec<f32> = scene.lights.iter().map(|(_, light)| light.power(&context, &bounds)).collect();

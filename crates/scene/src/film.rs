@@ -1,6 +1,6 @@
 //! The image plane of a scene: its size and the part of it that is rendered.
 
-use aureole_desc::{Limits, Node, SceneError, Span};
+use aureole_desc::{Limits, Node, SceneDesc, SceneError, Span};
 use aureole_elements::FilmSpec;
 
 /// A rectangle of pixels.
@@ -29,6 +29,14 @@ impl Film {
     /// An uncropped film.
     pub fn new(width: u32, height: u32) -> Self {
         Self { full: FilmSpec { width, height }, crop: Crop { x: 0, y: 0, width, height } }
+    }
+
+    /// The film of a description, without compiling it.
+    ///
+    /// # Errors
+    /// Sizes that are wrong or beyond the limits.
+    pub fn of(desc: &SceneDesc, limits: &Limits) -> Result<Self, SceneError> {
+        Self::from_node(desc.film.map(|id| &desc[id]), limits)
     }
 
     /// Reads a `film` node; 256 x 256 without one.

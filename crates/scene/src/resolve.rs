@@ -3,18 +3,18 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use aureole_desc::{Family, NodeId, Report, SceneDesc, SceneError, Span};
+use aureole_desc::{Family, Limits, NodeId, Report, SceneDesc, SceneError, Span};
 use aureole_elements::{FilmSpec, Material, Resolver, Shape, Texture, texture};
 use aureole_image::{Bitmap, Encoding, ImageLimits, read_bitmap};
 use aureole_math::{Arena, Id};
 use aureole_spectrum::{SpectrumRole, SpectrumSource};
 use rustc_hash::FxHashMap;
 
-/// A node that is being built, or has been.
+/// A node that is being built, or has been, at some cost of evaluation.
 #[derive(Clone, Copy)]
 enum Progress<T> {
     Begun,
-    Done(Id<T>),
+    Done(Id<T>, u64),
 }
 
 /// The compiler's state while elements are built.
@@ -25,14 +25,18 @@ pub(crate) struct Resolve<'a> {
     pub materials: Arena<Material>,
     pub film: FilmSpec,
     pub emitting_shape: Option<Id<Shape>>,
-    image_limits: ImageLimits,
+    limits: Limits,
+    /// Elements that are being built: each waits for the next.
+    depth: usize,
+    /// Evaluations that the element at work asks of others, so far.
+    cost: u64,
     built_textures: FxHashMap<NodeId, Progress<Texture>>,
     built_materials: FxHashMap<NodeId, Progress<Material>>,
     bitmaps: FxHashMap<(PathBuf, String), Arc<Bitmap>>,
 }
 
 impl<'a> Resolve<'a> {
-    pub(crate) fn new(desc: &'a SceneDesc, report: &'a mut Report, film: FilmSpec, max_pixels: u64) -> Self {
+    pub(crate) fn new(desc: &'a SceneDesc, report: &'a mut Report, film: FilmSpec, limits: Limits) -> Self {
         Self {
             desc,
             report,
@@ -40,7 +44,9 @@ impl<'a> Resolve<'a> {
             materials: Arena::new(),
             film,
             emitting_shape: None,
-            image_limits: ImageLimits { max_pixels, ..ImageLimits::default() },
+            limits,
+            depth: 0,
+            cost: 0,
             built_textures: FxHashMap::default(),
             built_materials: FxHashMap::default(),
             bitmaps: FxHashMap::default(),
@@ -56,6 +62,42 @@ impl<'a> Resolve<'a> {
         Err(SceneError::invalid(format!("a {family} is wanted here, not a {}", found.family), found.span))
     }
 
+    /// The node of every material.
+    pub(crate) fn material_nodes(&self) -> FxHashMap<Id<Material>, NodeId> {
+        let done = |(node, progress): (&NodeId, &Progress<Material>)| match progress {
+            Progress::Done(id, _) => Some((*id, *node)),
+            Progress::Begun => None,
+        };
+        self.built_materials.iter().filter_map(done).collect()
+    }
+
+    /// Builds an element below the current one; gives its cost too. Chains must not outgrow the stack, and two that both
+    /// refer to two that both refer to two ... must not outgrow all patience.
+    fn descend<T>(
+        &mut self,
+        node: NodeId,
+        build: impl FnOnce(&mut Self) -> Result<T, SceneError>,
+    ) -> Result<(T, u64), SceneError> {
+        let at = self.desc[node].span;
+        let check = |what: &str, found: u64, limit: u64| match found > limit {
+            true => Err(SceneError::Limit { what: what.to_owned(), found, limit, at }),
+            false => Ok(()),
+        };
+        check(
+            "the chain of elements that refer to each other",
+            self.depth as u64,
+            self.limits.max_nesting as u64,
+        )?;
+        self.depth += 1;
+        let others = std::mem::take(&mut self.cost);
+        let built = build(self);
+        self.depth -= 1;
+        let cost = 1 + std::mem::replace(&mut self.cost, others);
+        check("the number of evaluations of one element", cost, self.limits.max_evaluations)?;
+        self.cost += cost;
+        Ok((built?, cost))
+    }
+
     fn cycle(&self, node: NodeId) -> SceneError {
         let node = &self.desc[node];
         let name = node.name.as_deref().unwrap_or(&node.kind);
@@ -66,16 +108,19 @@ impl<'a> Resolve<'a> {
 impl Resolver for Resolve<'_> {
     fn texture(&mut self, node: NodeId) -> Result<Id<Texture>, SceneError> {
         match self.built_textures.get(&node) {
-            Some(Progress::Done(id)) => return Ok(*id),
+            Some(Progress::Done(id, cost)) => {
+                self.cost += cost;
+                return Ok(*id);
+            }
             Some(Progress::Begun) => return Err(self.cycle(node)),
             None => {}
         }
         self.expect(node, Family::Texture)?;
         self.built_textures.insert(node, Progress::Begun);
         let desc = self.desc;
-        let built = Texture::build(&desc[node], self)?;
+        let (built, cost) = self.descend(node, |this| Texture::build(&desc[node], this))?;
         let id = self.textures.push(built);
-        self.built_textures.insert(node, Progress::Done(id));
+        self.built_textures.insert(node, Progress::Done(id, cost));
         Ok(id)
     }
 
@@ -85,16 +130,19 @@ impl Resolver for Resolve<'_> {
 
     fn material(&mut self, node: NodeId) -> Result<Id<Material>, SceneError> {
         match self.built_materials.get(&node) {
-            Some(Progress::Done(id)) => return Ok(*id),
+            Some(Progress::Done(id, cost)) => {
+                self.cost += cost;
+                return Ok(*id);
+            }
             Some(Progress::Begun) => return Err(self.cycle(node)),
             None => {}
         }
         self.expect(node, Family::Bsdf)?;
         self.built_materials.insert(node, Progress::Begun);
         let desc = self.desc;
-        let built = Material::build(&desc[node], self)?;
+        let (built, cost) = self.descend(node, |this| Material::build(&desc[node], this))?;
         let id = self.materials.push(built);
-        self.built_materials.insert(node, Progress::Done(id));
+        self.built_materials.insert(node, Progress::Done(id, cost));
         Ok(id)
     }
 
@@ -103,7 +151,8 @@ impl Resolver for Resolve<'_> {
         if let Some(bitmap) = self.bitmaps.get(&key) {
             return Ok(bitmap.clone());
         }
-        let bitmap = Arc::new(read_bitmap(path, encoding, &self.image_limits).unwrap_or_else(|error| {
+        let limits = ImageLimits { max_pixels: self.limits.max_pixels, ..ImageLimits::default() };
+        let bitmap = Arc::new(read_bitmap(path, encoding, &limits).unwrap_or_else(|error| {
             let help = "a magenta picture stands in for it".to_owned();
             self.report.warn_with_help(error.to_string(), Some(help), at);
             Bitmap::placeholder([1.0, 0.0, 1.0])

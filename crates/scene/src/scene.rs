@@ -13,6 +13,7 @@ use aureole_spectrum::{Spectrum, Wavelengths};
 
 use crate::film::Film;
 use crate::lights::LightPicker;
+use crate::origins::Origins;
 use crate::shapes::Lookup;
 
 /// What a geometry of a level is.
@@ -54,6 +55,8 @@ pub struct Scene {
     pub(crate) levels: Vec<Vec<Object>>,
     pub(crate) unbounded: Vec<Object>,
     pub(crate) has_alpha: bool,
+    /// What was built from which nodes.
+    pub origins: Origins,
 }
 
 /// Where a ray meets the scene.
@@ -72,6 +75,17 @@ pub struct Interaction<'a> {
     material: Id<Material>,
     shape: &'a Shape,
     hit: ShapeHit,
+}
+
+/// What a surface is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Elements {
+    /// The shape.
+    pub shape: Id<Shape>,
+    /// Its material.
+    pub material: Id<Material>,
+    /// The light that it is.
+    pub light: Option<Id<Light>>,
 }
 
 /// How many there are of what.
@@ -172,6 +186,19 @@ impl Scene {
         self.instanced(ray, hit, local)
     }
 
+    /// What the surface at a hit is made of.
+    pub fn elements(&self, hit: &SceneHit) -> Elements {
+        let object = match self.levels[0].get(hit.instance as usize) {
+            _ if hit.geometry == UNBOUNDED => &self.unbounded[hit.primitive as usize],
+            Some(Object::Instance(instance)) => &self.levels[instance.level as usize][hit.geometry as usize],
+            _ => &self.levels[0][hit.geometry as usize],
+        };
+        let Object::Solid { shape, material, light, .. } = object else {
+            unreachable!("instances hold no hits of their own")
+        };
+        Elements { shape: *shape, material: *material, light: *light }
+    }
+
     fn instanced(&self, ray: &Ray, hit: &SceneHit, local: ShapeHit) -> Interaction<'_> {
         let Object::Instance(instance) = &self.levels[0][hit.instance as usize] else {
             unreachable!("the accelerator names instances by the geometries that are instances")
@@ -252,6 +279,11 @@ impl Scene {
             Some(target) => Ray { time, ..Ray::new(origin, target - origin).until(END) },
             None => Ray { time, ..Ray::new(origin, sample.wi) },
         }
+    }
+
+    /// The kinds of a surface's shape and material.
+    pub fn kinds(&self, elements: &Elements) -> [&'static str; 2] {
+        [self.shapes[elements.shape].kind(), self.materials[elements.material].kind()]
     }
 
     /// The box around everything that has one.

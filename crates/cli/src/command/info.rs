@@ -40,6 +40,8 @@ struct Info {
     load_seconds: f64,
     build_seconds: f64,
     accel: Accel,
+    /// What reading, building and rendering is expected to take at once, by estimate.
+    predicted_memory_bytes: u64,
     /// The most that the process has had at once while it read and built the scene, where the system tells.
     peak_memory_bytes: Option<u64>,
     warnings: Vec<String>,
@@ -106,6 +108,7 @@ impl Info {
                 primitives: stats.primitives,
                 sah_cost: stats.sah_cost,
             },
+            predicted_memory_bytes: session.estimate.peak(),
             peak_memory_bytes: memory::peak(),
             warnings: session.report.warnings.iter().map(|warning| warning.message.clone()).collect(),
         }
@@ -134,7 +137,8 @@ impl Info {
         let accel = &self.accel;
         let memory =
             self.peak_memory_bytes.map_or("?".into(), |bytes| format!("{}B", quantity(bytes as f64)));
-        line("memory", format!("{memory} in all, at most"));
+        let predicted = quantity(self.predicted_memory_bytes as f64);
+        line("memory", format!("{predicted}B to render it, by estimate; {memory} so far"));
         line("acceleration", format!("{}B", quantity(accel.bytes as f64)));
         if with_accel {
             line("  nodes", format!("{}, {} leaves, {} deep", accel.nodes, accel.leaves, accel.depth));

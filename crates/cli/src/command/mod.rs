@@ -1,5 +1,6 @@
 //! One file a command.
 
+mod debug_pixel;
 pub(crate) mod diff;
 pub(crate) mod gallery;
 pub(crate) mod info;

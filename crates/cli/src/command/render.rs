@@ -6,12 +6,13 @@ use aureole::image::{ToneMapping, WriteOptions};
 use aureole::render::{RenderOptions, RenderStats, Rendered, render};
 use serde::Serialize;
 
+use super::debug_pixel;
 use crate::args::{Color, RenderArgs, StatsFormat};
 use crate::diagnostics::Painter;
 use crate::exit::{self, Exit, Failure};
 use crate::memory;
 use crate::output::{Output, print};
-use crate::progress::{Watch, duration, quantity};
+use crate::progress::{Show, Watch, duration, print_line, quantity};
 use crate::session::{self, Session};
 use crate::signals::Signals;
 
@@ -37,15 +38,23 @@ pub(crate) fn run(args: &RenderArgs, painter: &Painter) -> Result<Exit, Failure>
     let signals = Signals::listen();
     limit_threads(args.threads);
     let session = session::open(&args.scene, args.loudness, painter)?;
+    if let Some(pixel) = args.debug_pixel {
+        return debug_pixel::run(&session, &render_options(args), pixel);
+    }
     let output = match output {
         Some(output) => output,
         None => default_output(&session)?,
     };
-    if args.loudness.verbose {
+    if args.loudness.verbose > 0 && !args.json {
         describe(&session);
     }
 
-    let watch = Watch::new(signals.clone(), !args.loudness.quiet, args.time);
+    let show = match (args.json, args.loudness.quiet) {
+        (true, _) => Show::Lines,
+        (false, true) => Show::Nothing,
+        (false, false) => Show::Bar,
+    };
+    let watch = Watch::new(signals.clone(), show, args.time);
     let rendered = render(&session.scene, &render_options(args), &watch);
     watch.finish();
     let mut rendered = rendered.map_err(|error| {
@@ -139,23 +148,30 @@ fn tell(
     output: &Output,
 ) -> Result<(), Failure> {
     if stats.non_finite > 0 && !args.loudness.quiet {
-        painter.warning(&format!("{} samples were not finite and are left out", stats.non_finite));
+        let (which, help) = match stats.first_non_finite {
+            Some(id) => debug_pixel::explain(session, &render_options(args), id),
+            None => Default::default(),
+        };
+        let count = stats.non_finite;
+        painter.warning(&format!("{count} samples were not finite and are left out; {which}"), Some(&help));
+    }
+    let figures = Stats {
+        load_seconds: session.load_seconds,
+        build_seconds: session.build_seconds,
+        render_seconds: stats.seconds,
+        samples: stats.samples,
+        rays: stats.rays,
+        peak_memory_bytes: memory::peak(),
+        non_finite: stats.non_finite,
+        complete: stats.complete,
+        file: output.to_string(),
+    };
+    if args.json {
+        print_line(&serde_json::json!({ "event": "done", "stats": figures }));
     }
     match args.stats {
-        Some(StatsFormat::Json) => {
-            let figures = Stats {
-                load_seconds: session.load_seconds,
-                build_seconds: session.build_seconds,
-                render_seconds: stats.seconds,
-                samples: stats.samples,
-                rays: stats.rays,
-                peak_memory_bytes: memory::peak(),
-                non_finite: stats.non_finite,
-                complete: stats.complete,
-                file: output.to_string(),
-            };
-            print(super::json_line(&figures)?)
-        }
+        Some(StatsFormat::Json) => print(super::json_line(&figures)?),
+        None if args.json => Ok(()),
         None if args.loudness.quiet => Ok(()),
         None => {
             let state = if stats.complete || args.time.is_some() { "" } else { " (interrupted)" };

@@ -102,6 +102,18 @@ fn several_errors_are_said_at_once() {
 }
 
 #[test]
+fn several_errors_are_said_at_once_for_pbrt_too() {
+    let program = Program::new();
+    program.write(
+        "three.pbrt",
+        "WorldBegin\nShape \"spere\" \"float radius\" 1\nMaterial \"difuse\"\n\
+         Shape \"sphere\" \"floot radius\" [1 2] \"float zmin\" 0\nShape \"sphere\"\n",
+    );
+    let words = ["spere", "three.pbrt:2:", "difuse", "three.pbrt:3:", "floot", "three.pbrt:4:", "`float`"];
+    program.fails("render three.pbrt", 3, &words);
+}
+
+#[test]
 fn messages_have_no_colours_away_from_a_terminal() {
     let program = Program::with_ball(r#"<shape type="spere"/>"#);
     assert!(!program.run("render ball.xml").stderr.contains('\x1b'));

@@ -4,4 +4,6 @@ mod commands;
 mod errors;
 #[expect(clippy::unwrap_used, reason = "a test without its files cannot go on")]
 mod fixture;
+mod hostile;
 mod render;
+mod trust;

@@ -131,6 +131,13 @@ macro_rules! lobes {
             }
         })*
 
+        impl Lobe {
+            /// The lobe's name, for people who look into a path.
+            pub fn name(&self) -> &'static str {
+                match self { $(Self::$Variant(_) => stringify!($Variant)),* }
+            }
+        }
+
         impl LobeOps for Lobe {
             #[inline]
             fn eval(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> Spectrum {

@@ -110,6 +110,11 @@ impl Bsdf {
         }
     }
 
+    /// The names of all lobes, for people who look into a path.
+    pub fn lobe_names(&self) -> Vec<&'static str> {
+        self.lobes.iter().map(|placed| placed.lobe.name()).collect()
+    }
+
     /// How many lobes there are.
     pub(super) fn len(&self) -> usize {
         self.lobes.len()

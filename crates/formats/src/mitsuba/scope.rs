@@ -136,12 +136,9 @@ impl<'a> Scope<'a> {
 pub(super) fn resolve<'a>(tree: &'a Tree, child: &'a Child) -> Result<Nested<'a>, SceneError> {
     let id = match &child.target {
         Target::Object(id) => *id,
-        Target::Reference(name) => tree.find(name).ok_or_else(|| SceneError::UnknownName {
-            what: "id",
-            name: name.clone(),
-            known: tree.known_ids(),
-            at: child.span,
-        })?,
+        Target::Reference(name) => tree
+            .find(name)
+            .ok_or_else(|| SceneError::unknown_name("id", name, tree.known_ids(), child.span))?,
     };
     Ok(Nested { name: child.name.as_deref(), id, tag: tree.get(id).tag, span: child.span })
 }

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
-use aureole_desc::{Family, Mesh, Node, NodeId, Params, SceneError, Span, Value};
+use aureole_desc::{Family, Limits, Mesh, Node, NodeId, Params, SceneError, Span, Value};
 use aureole_spectrum::SpectrumSource;
+use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 
 use super::scope::Scope;
 use super::translate::{MeshKey, Orientation, Translator};
@@ -47,6 +49,7 @@ fn gather(
 ) -> Result<(), SceneError> {
     let tree = t.tree;
     let object = tree.get(id);
+    t.count_gathered(object.span)?;
     match object.plugin.as_str() {
         "shapegroup" => Ok(()),
         "merge" if depth > t.context.options.limits.max_nesting => {
@@ -140,8 +143,36 @@ fn turn_if_mirrored(scope: &mut Scope<'_>) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Reads a mesh file, once for all shapes that want it in the same way.
-fn mesh(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(), SceneError> {
+/// A mesh that a shape asks for.
+struct MeshRequest<'a> {
+    plugin: &'a str,
+    key: MeshKey,
+    at: Span,
+}
+
+/// Reads the meshes of all shapes, side by side. Those that fail are tried again, and complained about, by their shapes.
+pub(super) fn read_meshes(t: &mut Translator<'_, '_, '_>) {
+    let tree = t.tree;
+    let is_mesh = |plugin: &str| KINDS.contains(&(plugin, "mesh"));
+    let mut requests: Vec<MeshRequest<'_>> = Vec::new();
+    let mut known = FxHashSet::default();
+    for object in tree.objects().filter(|object| object.tag == Tag::Shape && is_mesh(&object.plugin)) {
+        let request = Scope::new(tree, object).and_then(|mut scope| mesh_request(t, &mut scope));
+        requests.extend(request.ok().filter(|request| known.insert(request.key.clone())));
+    }
+    let limits = &t.context.options.limits;
+    let read = requests.into_par_iter().filter_map(|request| {
+        let mesh = read_mesh(limits, &request).ok()?;
+        Some((request.key, mesh))
+    });
+    t.meshes = read.collect::<Vec<_>>().into_iter().collect();
+}
+
+/// What mesh a shape asks for; its parameters about that are taken.
+fn mesh_request<'a>(
+    t: &mut Translator<'a, '_, '_>,
+    scope: &mut Scope<'a>,
+) -> Result<MeshRequest<'a>, SceneError> {
     let (path, at) = t.path(scope, "filename")?;
     let plugin = scope.object.plugin.as_str();
     let index = match scope.int("shape_index")? {
@@ -153,40 +184,36 @@ fn mesh(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(), Sce
     // Mitsuba turns the texture coordinates of OBJ files round, unless told not to.
     let flip_v = scope.bool("flip_tex_coords", plugin == "obj")?;
     scope.ignore(&["max_smooth_angle", "srgb", "collapse", "fold"]);
+    Ok(MeshRequest { plugin, key: (path, index, flip_v, face_normals), at })
+}
 
-    let key: MeshKey = (path, index, flip_v, face_normals);
-    let (mesh, orientation) = match t.meshes.get(&key) {
+/// Gives a shape its mesh, which it shares with all that want it in the same way.
+fn mesh<'a>(t: &mut Translator<'a, '_, '_>, scope: &mut Scope<'a>) -> Result<(), SceneError> {
+    let request = mesh_request(t, scope)?;
+    let (mesh, orientation) = match t.meshes.get(&request.key) {
         Some(known) => known.clone(),
-        None => {
-            let (mesh, orientation) = read_mesh(t, plugin, &key, at)?;
-            let read = (Arc::new(mesh), orientation);
-            t.meshes.insert(key, read.clone());
-            read
-        }
+        None => read_mesh(&t.context.options.limits, &request)?,
     };
     if orientation == Orientation::ByFaces {
         turn_if_mirrored(scope)?;
     }
-    scope.out.push("mesh", Value::Mesh(mesh), at);
-    if face_normals {
+    scope.out.push("mesh", Value::Mesh(mesh), request.at);
+    if request.key.3 {
         scope.out.push("face_normals", Value::Bool(true), scope.span());
     }
     Ok(())
 }
 
 fn read_mesh(
-    t: &Translator<'_, '_, '_>,
-    plugin: &str,
-    (path, index, flip_v, face_normals): &MeshKey,
-    at: Span,
-) -> Result<(Mesh, Orientation), SceneError> {
-    let limits = &t.context.options.limits;
+    limits: &Limits,
+    MeshRequest { plugin, key: (path, index, flip_v, face_normals), at }: &MeshRequest<'_>,
+) -> Result<(Arc<Mesh>, Orientation), SceneError> {
     let mut face_normals = *face_normals;
-    let mut mesh = match plugin {
-        "obj" => obj::read(path, limits, at)?,
-        "ply" => ply::read(path, limits, at)?,
+    let mut mesh = match *plugin {
+        "obj" => obj::read(path, limits, *at)?,
+        "ply" => ply::read(path, limits, *at)?,
         _ => {
-            let read = serialized::read(path, *index, limits, at)?;
+            let read = serialized::read(path, *index, limits, *at)?;
             face_normals |= read.face_normals;
             read.mesh
         }
@@ -195,14 +222,14 @@ fn read_mesh(
         mesh.uvs.iter_mut().for_each(|[_, v]| *v = 1.0 - *v);
     }
     if !face_normals && !mesh.normals.is_empty() {
-        return Ok((mesh, Orientation::ByNormals));
+        return Ok((Arc::new(mesh), Orientation::ByNormals));
     }
     // Meshes are smooth in Mitsuba unless they are told to be flat.
     mesh.normals.clear();
     if !face_normals {
         add_smooth_normals(&mut mesh);
     }
-    Ok((mesh, Orientation::ByFaces))
+    Ok((Arc::new(mesh), Orientation::ByFaces))
 }
 
 /// A grid of signed distances, with its values.

@@ -22,8 +22,10 @@ pub(super) fn translate(parsed: &Parsed, context: &mut Context<'_>) -> Result<Sc
         scene: SceneDesc::default(),
         state: vec![State::New; parsed.tree.len()],
         depth: 0,
+        gathered: 0,
         meshes: FxHashMap::default(),
     };
+    shape::read_meshes(&mut translator);
     let before = translator.context.report.errors.len();
     translator.root(parsed.root)?;
     let errors = &mut translator.context.report.errors;
@@ -58,6 +60,8 @@ pub(super) struct Translator<'a, 'c, 'r> {
     pub(super) scene: SceneDesc,
     state: Vec<State>,
     depth: usize,
+    /// Shapes met while merged ones were gathered.
+    gathered: u64,
     /// Meshes that were read.
     pub(super) meshes: FxHashMap<MeshKey, (Arc<Mesh>, Orientation)>,
 }
@@ -69,7 +73,7 @@ impl<'a> Translator<'a, '_, '_> {
             // An error in one child leaves the others alone.
             let result = resolve(self.tree, child).and_then(|nested| self.root_child(nested.id, nested.tag));
             if let Err(error) = result {
-                self.context.report.errors.push(error);
+                self.context.report.collect(error)?;
             }
         }
         Ok(())
@@ -121,6 +125,17 @@ impl<'a> Translator<'a, '_, '_> {
         let value = value.inspect_err(|_| self.state[id.index()] = State::New)?;
         self.state[id.index()] = State::Done(Box::new(value.clone()));
         Ok(value)
+    }
+
+    /// Counts a shape that is gathered: merged shapes that refer to merged shapes multiply.
+    pub(super) fn count_gathered(&mut self, at: Span) -> Result<(), SceneError> {
+        // Each shape is met once or a few times; in small scenes the depth of nesting ends a circle before this does.
+        const TIMES: u64 = 16;
+        const FREE: u64 = 4096;
+        self.gathered += 1;
+        let (found, limit) = (self.gathered, FREE + TIMES * self.tree.len() as u64);
+        let what = "the number of merged shapes".to_owned();
+        if found > limit { Err(SceneError::Limit { what, found, limit, at }) } else { Ok(()) }
     }
 
     /// A child as a parameter of the node.
@@ -188,18 +203,15 @@ impl<'a> Translator<'a, '_, '_> {
         })
     }
 
-    /// A file that the property `name` asks for, beside the file that asks or in the search folders.
+    /// A file that the property `name` asks for, beside the file that asks or in the search folders. Whoever reads it says
+    /// what happens when there is none.
     pub(super) fn path(&mut self, scope: &mut Scope<'_>, name: &str) -> Result<(PathBuf, Span), SceneError> {
         let at = scope.values.span(name);
         let file = scope.string(name)?.ok_or_else(|| scope.missing(name, "a file name"))?;
         let folder = self.context.sources.path(scope.span()).and_then(Path::parent).unwrap_or("".as_ref());
         let mut search = self.search.clone();
         search.push_front(folder.to_owned());
-        let path = search.resolve(&file);
-        if let Err(source) = path.metadata() {
-            return Err(SceneError::Read { path, source, at });
-        }
-        Ok((path, at))
+        Ok((search.resolve(&file), at))
     }
 
     /// Makes the file that `filename` asks for a parameter.

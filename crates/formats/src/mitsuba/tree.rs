@@ -115,6 +115,11 @@ impl Tree {
         self.objects.len()
     }
 
+    /// All objects, in the order of their files.
+    pub(super) fn objects(&self) -> impl Iterator<Item = &Object> {
+        self.objects.iter()
+    }
+
     pub(super) fn get(&self, id: ObjectId) -> &Object {
         &self.objects[id.0]
     }
@@ -155,10 +160,8 @@ impl Tree {
         None
     }
 
-    /// All ids, sorted, for messages.
-    pub(super) fn known_ids(&self) -> Vec<String> {
-        let mut ids: Vec<String> = self.ids.keys().chain(self.aliases.keys()).cloned().collect();
-        ids.sort();
-        ids
+    /// All ids, in no order, for messages.
+    pub(super) fn known_ids(&self) -> impl Iterator<Item = &str> + Clone {
+        self.ids.keys().chain(self.aliases.keys()).map(String::as_str)
     }
 }

@@ -54,14 +54,22 @@ const DIRECTIVES: &[&str] = &[
 ];
 
 impl Reader<'_, '_> {
-    /// Carries out all directives of a text.
+    /// Carries out all directives of a text. Those that make no sense are collected in the report while reading goes on;
+    /// where the grammar is broken, it ends.
     pub(super) fn run(&mut self, text: &str, source: SourceId) -> Result<(), SceneError> {
         let mut lexer = Lexer::new(text, source);
         while let Some(Spanned { token, span }) = lexer.next()? {
             let Token::Word(word) = token else {
                 return Err(SceneError::syntax("a directive is wanted here", span));
             };
-            self.directive(word, span, &mut lexer)?;
+            match self.directive(word, span, &mut lexer) {
+                Ok(()) => {}
+                Err(error @ (SceneError::Syntax { .. } | SceneError::Limit { .. })) => return Err(error),
+                Err(error) => {
+                    self.context.report.collect(error)?;
+                    skip_to_directive(&mut lexer)?;
+                }
+            }
         }
         Ok(())
     }
@@ -129,13 +137,13 @@ impl Reader<'_, '_> {
     /// Directives of a name and parameters.
     fn with_parameters(&mut self, word: &str, at: Span, lexer: &mut Lexer<'_>) -> Result<(), SceneError> {
         if word == "Option" {
-            let options = params::parse(lexer, at)?;
+            let options = params::parse(lexer, self.limits(), at)?;
             for option in options.into_list() {
                 self.warn(format!("option `{}` has no effect here", option.name), option.span);
             }
             return Ok(());
         }
-        if !DIRECTIVES.contains(&word) {
+        if !is_known(word) {
             let near = suggest(word, DIRECTIVES.iter().copied());
             let help = near.map_or_else(String::new, |near| format!(", did you mean `{near}`?"));
             return Err(SceneError::syntax(format!("unknown directive `{word}`{help}"), at));
@@ -167,9 +175,11 @@ impl Reader<'_, '_> {
                 self.texture_directive(name, &value_type, &class, &params)
             }
             "Attribute" => {
-                let params = params::parse(lexer, at)?;
-                self.state.defaults.entry(name).or_default().extend(params.into_list());
-                Ok(())
+                let params = params::parse(lexer, self.limits(), at)?;
+                let limits = *self.limits();
+                let defaults = self.state.defaults.entry(name).or_default();
+                defaults.extend(params.into_list());
+                limits.check_params(defaults.len(), at)
             }
             _ => self.element(word, &name, at, lexer),
         }
@@ -216,7 +226,7 @@ impl Reader<'_, '_> {
 
     /// The parameters that follow, with the defaults for their target.
     fn parameters(&self, lexer: &mut Lexer<'_>, at: Span, target: &str) -> Result<ParamSet, SceneError> {
-        let mut params = params::parse(lexer, at)?;
+        let mut params = params::parse(lexer, self.limits(), at)?;
         if let Some(defaults) = self.state.defaults.get(target) {
             params.extend(defaults);
         }
@@ -330,8 +340,23 @@ impl Reader<'_, '_> {
             self.warn("the file has no `WorldBegin`", Span::new(source, 0, 0));
         }
         self.finish_options()?;
+        self.read_meshes()?;
         Ok(self.desc)
     }
+}
+
+/// Skips what is left of a directive.
+fn skip_to_directive(lexer: &mut Lexer<'_>) -> Result<(), SceneError> {
+    let is_directive = |word: &Spanned<'_>| matches!(word.token, Token::Word(w) if is_known(w));
+    while lexer.peek()?.is_some_and(|word| !is_directive(word)) {
+        lexer.next()?;
+    }
+    Ok(())
+}
+
+/// Whether a word is a directive.
+fn is_known(word: &str) -> bool {
+    DIRECTIVES.contains(&word)
 }
 
 fn vector(v: [f64; 3]) -> Vector3 {

@@ -45,6 +45,10 @@ fn read(input: Input<'_>, context: &mut Context<'_>) -> Result<SceneDesc, SceneE
     let folder = input.path.parent().map(Into::into).unwrap_or_default();
     let mut reader = Reader::new(context, folder);
     reader.open_files.push(input.path.to_owned());
+    let before = reader.context.report.errors.len();
     reader.run(&text, source)?;
+    if reader.context.report.errors.len() > before {
+        return Err(reader.context.report.errors.remove(before));
+    }
     reader.finish(source)
 }

@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use aureole_desc::{Report, SceneError, Span, Value, suggest};
+use aureole_desc::{Limits, Report, SceneError, Span, Value, suggest};
 use aureole_spectrum::{SpectrumRole, SpectrumSource, Tabulated, blackbody, named_spectrum, spectrum_names};
 
 use super::lexer::{Lexer, Token};
@@ -59,7 +59,7 @@ const TYPES: &[&str] = &[
 ];
 
 /// Reads the parameters that follow a directive.
-pub(super) fn parse(lexer: &mut Lexer<'_>, span: Span) -> Result<ParamSet, SceneError> {
+pub(super) fn parse(lexer: &mut Lexer<'_>, limits: &Limits, span: Span) -> Result<ParamSet, SceneError> {
     let mut list = Vec::new();
     while let Some(word) = lexer.peek()? {
         let Token::Text(declaration) = &word.token else { break };
@@ -80,6 +80,7 @@ pub(super) fn parse(lexer: &mut Lexer<'_>, span: Span) -> Result<ParamSet, Scene
         }
         let values = values(lexer, at)?;
         list.push(PbrtParam { ty: ty.into(), name: name.into(), values, span: at, used: Cell::new(false) });
+        limits.check_params(list.len(), at)?;
     }
     Ok(ParamSet { span, list, asked: Default::default() })
 }

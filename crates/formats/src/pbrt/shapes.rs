@@ -1,9 +1,12 @@
 //! Shapes.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use aureole_desc::{Family, Mesh, Params, SceneError, Span, Value};
+use aureole_desc::{Family, Mesh, NodeId, Params, SceneError, Span, Value};
 use aureole_math::{Transform, Vector3};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use super::params::ParamSet;
 use super::state::Reader;
@@ -116,10 +119,41 @@ impl Reader<'_, '_> {
             let at = displacement.span;
             self.warn("displacement is not rendered yet: the mesh stays smooth", at);
         }
-        let at = given.at("filename");
-        let mesh = ply::read(&path, self.limits(), at)?;
-        params.push("mesh", Value::Mesh(Arc::new(mesh)), at);
+        // All files are read at the end, side by side; until then the path stands in for the mesh.
+        params.push("mesh", Value::Path(path), given.at("filename"));
         Ok("mesh")
+    }
+
+    /// Reads all mesh files side by side, each once, and gives the shapes their meshes.
+    pub(super) fn read_meshes(&mut self) -> Result<(), SceneError> {
+        let mut files: Vec<(PathBuf, Span)> = Vec::new();
+        let mut index_of = FxHashMap::default();
+        let mut users: Vec<(NodeId, usize, Span)> = Vec::new();
+        for (id, node) in self.desc.nodes().filter(|(_, node)| node.kind == "mesh") {
+            let Some(Value::Path(path)) = node.params.get("mesh") else { continue };
+            let at = node.params.span("mesh");
+            let index = *index_of.entry(path.clone()).or_insert_with(|| {
+                files.push((path.clone(), at));
+                files.len() - 1
+            });
+            users.push((id, index, at));
+        }
+        let limits = self.limits();
+        let read = |(path, at): &(PathBuf, Span)| ply::read(path, limits, *at).map(Arc::new);
+        let mut meshes = Vec::new();
+        let mut errors = Vec::new();
+        for result in files.par_iter().map(read).collect::<Vec<_>>() {
+            meshes.push(result.map_err(|error| errors.push(error)).ok());
+        }
+        for (id, index, at) in users {
+            if let Some(mesh) = &meshes[index] {
+                self.desc[id].params.push("mesh", Value::Mesh(mesh.clone()), at);
+            }
+        }
+        let mut errors = errors.into_iter();
+        let first = errors.next();
+        self.context.report.errors.extend(errors);
+        first.map_or(Ok(()), Err)
     }
 }
 

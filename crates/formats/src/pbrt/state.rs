@@ -149,10 +149,8 @@ impl<'a, 'c> Reader<'a, 'c> {
 pub(super) fn unknown<'n>(
     what: &'static str,
     name: &str,
-    known: impl Iterator<Item = &'n String>,
+    known: impl Iterator<Item = &'n String> + Clone,
     at: Span,
 ) -> SceneError {
-    let mut known: Vec<String> = known.cloned().collect();
-    known.sort();
-    SceneError::UnknownName { what, name: name.to_owned(), known, at }
+    SceneError::unknown_name(what, name, known.map(String::as_str), at)
 }

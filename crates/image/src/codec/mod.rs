@@ -8,11 +8,15 @@ mod exr;
 mod format;
 mod pfm;
 mod pnm;
+mod probe;
 
+use std::fs::File;
+use std::io::{self, Read};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 pub use format::Format;
+pub use probe::{Probe, probe_image};
 
 use crate::error::Fault;
 use crate::raster::Raster;
@@ -169,8 +173,17 @@ fn no_pixels(path: &Path) -> ImageError {
     Fault::content("it has no pixels").at(path)
 }
 
-fn read_file(path: &Path) -> Result<Vec<u8>, ImageError> {
-    std::fs::read(path).map_err(|source| ImageError::Read { path: path.to_owned(), source })
+/// Reads a file of at most as many bytes as a decoded image may have.
+fn read_file(path: &Path, limits: &ImageLimits) -> Result<Vec<u8>, ImageError> {
+    let failed = |source| ImageError::Read { path: path.to_owned(), source };
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(failed)?;
+    file.take(limits.max_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > limits.max_bytes {
+        let what = "the file's bytes".to_owned();
+        return Err(Fault::TooLarge { what, limit: limits.max_bytes }.at(path));
+    }
+    Ok(bytes)
 }
 
 /// Reads an image with all its channels as linear floats; colours of whole-number files are taken as sRGB.
@@ -178,15 +191,21 @@ fn read_file(path: &Path) -> Result<Vec<u8>, ImageError> {
 /// # Errors
 /// [`ImageError::Read`], [`ImageError::Decode`], [`ImageError::UnknownFormat`] or [`ImageError::TooLarge`].
 pub fn read_image(path: &Path, limits: &ImageLimits) -> Result<Image, ImageError> {
-    decode_image(&read_file(path)?, path, limits)
+    decode_image(&read_file(path, limits)?, path, limits)
 }
 
 /// Reads a picture for a texture: colour or grey, with alpha if there is one.
 ///
+/// It must be a regular file: a scene may name a pipe into which nobody writes.
+///
 /// # Errors
 /// As [`read_image`].
 pub fn read_bitmap(path: &Path, encoding: Encoding, limits: &ImageLimits) -> Result<Bitmap, ImageError> {
-    decode_bitmap(&read_file(path)?, path, encoding, limits)
+    let failed = |source| ImageError::Read { path: path.to_owned(), source };
+    if !std::fs::metadata(path).map_err(failed)?.is_file() {
+        return Err(failed(io::Error::other("it is not a file")));
+    }
+    decode_bitmap(&read_file(path, limits)?, path, encoding, limits)
 }
 
 /// As [`read_image`], from a file's bytes; the path is for messages and for formats without a mark.

@@ -3,7 +3,7 @@
 //!
 //! [Debevec] P. Debevec, "PFM Portable FloatMap Image Format".
 
-use super::WriteOptions;
+use super::{Probe, WriteOptions};
 use crate::error::Fault;
 use crate::raster::{Raster, Texels};
 use crate::{Image, ImageLimits};
@@ -22,6 +22,13 @@ fn header(bytes: &[u8]) -> Option<(&str, u64, u64, f32, &[u8])> {
     let (height, rest) = word(rest)?;
     let (scale, rest) = word(rest)?;
     Some((magic, width.parse().ok()?, height.parse().ok()?, scale.parse().ok()?, rest))
+}
+
+/// The size of a picture by its first bytes.
+pub(super) fn probe(start: &[u8]) -> Option<Probe> {
+    let (magic, width, height, ..) = header(start)?;
+    let channels = if magic == "PF" { 3 } else { 1 };
+    Some(Probe { width, height, bytes_per_pixel: 4 * channels })
 }
 
 pub(super) fn decode(bytes: &[u8], limits: &ImageLimits) -> Result<Raster, Fault> {

@@ -1,10 +1,12 @@
 //! What integrators share: light samples, and weights for several ways of finding the same light.
 
-use aureole_elements::Bsdf;
 use aureole_elements::bsdf::TransportMode;
-use aureole_math::{Point2, Point3, Ray, Vector3};
+use aureole_elements::{Bsdf, Light};
+use aureole_math::{Id, Point2, Point3, Ray, Vector3};
 use aureole_scene::{Interaction, Scene};
 use aureole_spectrum::{Spectrum, Wavelengths};
+
+use crate::replay::Event;
 
 /// The power heuristic with exponent two [Veach 1997, section 9.2.4].
 #[inline]
@@ -22,6 +24,17 @@ pub(super) struct DirectLight {
     pub contribution: Spectrum,
     /// The ray that must be free.
     pub ray: Ray,
+    /// Which light, and the density of its direction: for those who watch.
+    light: Id<Light>,
+    pdf_omega: f32,
+}
+
+impl DirectLight {
+    /// What to tell of it, given what it adds to the whole sample.
+    pub(super) fn event(&self, contribution: Spectrum) -> Event {
+        let light = self.light.index() as u32;
+        Event::Light { light, wi: self.ray.direction.normalized(), pdf_omega: self.pdf_omega, contribution }
+    }
 }
 
 /// Numbers that choose a light and a point on it.
@@ -66,7 +79,8 @@ pub(super) fn sample_light(
         _ => 1.0,
     };
     let contribution = value * sample.radiance * (weight / pdf);
-    Some(DirectLight { contribution, ray: scene.shadow_ray(&at.surface, &sample, time) })
+    let ray = scene.shadow_ray(&at.surface, &sample, time);
+    Some(DirectLight { contribution, ray, light: choice.light, pdf_omega: pdf })
 }
 
 /// The density with which [`sample_light`] would have found the light that a ray from `reference` met.

@@ -14,6 +14,7 @@ use aureole_math::Ray;
 use aureole_scene::Scene;
 use aureole_spectrum::Spectrum;
 
+use crate::replay::Event;
 use path::PathState;
 
 /// Dimensions below this one belong to the camera: film, lens, time.
@@ -54,6 +55,18 @@ impl Batch {
 pub trait Integrator: Send + Sync {
     /// Estimates the radiance along each ray of a batch; `radiance` comes in black.
     fn trace(&self, scene: &Scene, starts: &[PathStart], radiance: &mut [Spectrum], batch: &mut Batch);
+
+    /// The same for one ray, with every step told. Integrators that keep their steps to themselves only trace.
+    fn trace_watched(
+        &self,
+        scene: &Scene,
+        starts: &[PathStart; 1],
+        radiance: &mut [Spectrum; 1],
+        batch: &mut Batch,
+        _events: &mut Vec<Event>,
+    ) {
+        self.trace(scene, starts, radiance, batch);
+    }
 }
 
 /// An algorithm that is clearest one ray at a time.

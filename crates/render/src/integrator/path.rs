@@ -15,6 +15,7 @@ use aureole_spectrum::{Spectrum, Wavelengths};
 
 use super::lighting::{LightNumbers, Weighting, environment, light_pdf, power_heuristic, sample_light};
 use super::{Batch, FIRST_FREE_DIMENSION, Integrator, IntegratorManual, PathStart, max_depth};
+use crate::replay::{Event, Nobody, Vertex, Watch};
 
 pub(super) const MANUAL: IntegratorManual = IntegratorManual {
     kind: "path",
@@ -101,7 +102,8 @@ impl Path {
     }
 
     /// Adds what a segment found, and continues its path from there.
-    fn shade(
+    #[expect(clippy::too_many_arguments, reason = "the state of one path, and who watches it")]
+    fn shade<W: Watch>(
         &self,
         scene: &Scene,
         starts: &[PathStart],
@@ -109,33 +111,44 @@ impl Path {
         state: &mut PathState,
         i: usize,
         depth: u32,
+        watch: &mut W,
     ) {
         let (ray, segment, hit) = (state.rays[i], state.segments[i], state.hits[i]);
         let found = &mut radiance[segment.path as usize];
         let is_visible = depth > 0 || !self.hide_emitters;
         if !hit.is_some() {
+            watch.hear(|| Event::Escape { direction: ray.direction });
             if is_visible {
                 let weight = |pdf: f32| power_heuristic(segment.pdf_omega, pdf);
-                *found += segment.throughput * environment(scene, segment.reference, ray.direction, weight);
+                let contribution =
+                    segment.throughput * environment(scene, segment.reference, ray.direction, weight);
+                watch.hear(|| Event::Found { contribution });
+                *found += contribution;
             }
             return;
         }
         let at = scene.interaction(&ray, &hit);
+        watch.hear(|| {
+            let lobes = scene.bsdf(&at, -ray.direction, Wavelengths::RGB).lobe_names();
+            Event::Vertex(Box::new(Vertex::new(scene.elements(&hit), &at, segment.throughput, lobes)))
+        });
         if at.light.is_some() && is_visible {
             let emitted = scene.emitted(&at, -ray.direction, Wavelengths::RGB);
             if !emitted.is_black() {
                 let pdf = light_pdf(scene, segment.reference, ray.direction, &at);
-                *found += segment.throughput * emitted * power_heuristic(segment.pdf_omega, pdf);
+                let contribution = segment.throughput * emitted * power_heuristic(segment.pdf_omega, pdf);
+                watch.hear(|| Event::Found { contribution });
+                *found += contribution;
             }
         }
         if depth + 1 < self.max_depth {
-            self.scatter(scene, &starts[segment.path as usize], state, &ray, segment, &at, depth);
+            self.scatter(scene, &starts[segment.path as usize], state, &ray, segment, &at, depth, watch);
         }
     }
 
     /// Draws a light sample and the path's next direction.
-    #[expect(clippy::too_many_arguments, reason = "the state of one path at one surface")]
-    fn scatter(
+    #[expect(clippy::too_many_arguments, reason = "the state of one path at one surface, and who watches it")]
+    fn scatter<W: Watch>(
         &self,
         scene: &Scene,
         start: &PathStart,
@@ -144,6 +157,7 @@ impl Path {
         segment: Segment,
         at: &Interaction<'_>,
         depth: u32,
+        watch: &mut W,
     ) {
         let wo = -ray.direction;
         let (sampler, key) = (&scene.sampler, start.key);
@@ -160,19 +174,32 @@ impl Path {
             let weighting = Weighting::Against { lights: 1, bsdfs: 1 };
             if let Some(light) = sample_light(scene, at, bsdf, wo, numbers, weighting, ray.time) {
                 let contribution = segment.throughput * light.contribution;
+                watch.hear(|| light.event(contribution));
                 state.shadow_rays.push(light.ray);
                 state.pending.push(Pending { path: segment.path, contribution });
             }
         }
         let lobe = draw_if(bsdf.has_choice(), LOBE);
         let direction = sampler.get_2d(key, dimension + DIRECTION);
-        let Some(drawn) = bsdf.sample(wo, lobe, direction, TransportMode::Radiance) else { return };
+        let Some(drawn) = bsdf.sample(wo, lobe, direction, TransportMode::Radiance) else {
+            watch.hear(|| Event::Absorb);
+            return;
+        };
+        watch.hear(|| Event::Scatter {
+            wi: drawn.wi,
+            pdf_omega: drawn.pdf_omega,
+            weight: drawn.weight,
+            is_delta: drawn.flags.delta,
+            is_transmission: drawn.flags.transmission,
+        });
         let mut throughput = segment.throughput * drawn.weight;
         let eta = segment.eta * drawn.eta;
         if depth + 1 >= self.rr_depth {
             // Refraction squeezes radiance, but a path that will leave the glass again is not weaker for it.
             let survival = (throughput.max_element() * eta * eta).min(0.95);
-            if sampler.get_1d(key, dimension + ROULETTE) >= survival {
+            let survives = sampler.get_1d(key, dimension + ROULETTE) < survival;
+            watch.hear(|| Event::Roulette { survival, survives });
+            if !survives {
                 return;
             }
             throughput = throughput / survival;
@@ -205,11 +232,12 @@ impl PathState {
     }
 
     /// Traces the shadow rays and adds what arrives.
-    fn light(&mut self, scene: &Scene, radiance: &mut [Spectrum]) {
+    fn light<W: Watch>(&mut self, scene: &Scene, radiance: &mut [Spectrum], watch: &mut W) {
         self.blocked.clear();
         self.blocked.resize(self.shadow_rays.len(), false);
         scene.occluded_many(&self.shadow_rays, &mut self.blocked);
-        for (pending, blocked) in self.pending.iter().zip(&self.blocked) {
+        for (pending, &blocked) in self.pending.iter().zip(&self.blocked) {
+            watch.hear(|| Event::Shadow { blocked });
             if !blocked {
                 radiance[pending.path as usize] += pending.contribution;
             }
@@ -219,8 +247,16 @@ impl PathState {
     }
 }
 
-impl Integrator for Path {
-    fn trace(&self, scene: &Scene, starts: &[PathStart], radiance: &mut [Spectrum], batch: &mut Batch) {
+impl Path {
+    /// Advances all paths of a batch to their ends.
+    fn advance<W: Watch>(
+        &self,
+        scene: &Scene,
+        starts: &[PathStart],
+        radiance: &mut [Spectrum],
+        batch: &mut Batch,
+        watch: &mut W,
+    ) {
         let state = &mut batch.path;
         state.begin(starts);
         let mut depth = 0;
@@ -230,15 +266,32 @@ impl Integrator for Path {
             scene.closest_hits(&state.rays, &mut state.hits);
             batch.rays += state.rays.len() as u64;
             for i in 0..state.rays.len() {
-                self.shade(scene, starts, radiance, state, i, depth);
+                self.shade(scene, starts, radiance, state, i, depth, watch);
             }
             batch.rays += state.shadow_rays.len() as u64;
-            state.light(scene, radiance);
+            state.light(scene, radiance, watch);
             std::mem::swap(&mut state.rays, &mut state.next_rays);
             std::mem::swap(&mut state.segments, &mut state.next_segments);
             state.next_rays.clear();
             state.next_segments.clear();
             depth += 1;
         }
+    }
+}
+
+impl Integrator for Path {
+    fn trace(&self, scene: &Scene, starts: &[PathStart], radiance: &mut [Spectrum], batch: &mut Batch) {
+        self.advance(scene, starts, radiance, batch, &mut Nobody);
+    }
+
+    fn trace_watched(
+        &self,
+        scene: &Scene,
+        starts: &[PathStart; 1],
+        radiance: &mut [Spectrum; 1],
+        batch: &mut Batch,
+        events: &mut Vec<Event>,
+    ) {
+        self.advance(scene, starts, radiance, batch, events);
     }
 }

@@ -87,7 +87,7 @@ impl Parser<'_, '_> {
         for child in node.children() {
             if child.is_text() && child.text().is_some_and(|text| !text.trim().is_empty()) {
                 let at = Span::new(file.source, child.range().start, child.range().end);
-                self.collect(SceneError::syntax("text between elements has no meaning here", at));
+                self.collect(SceneError::syntax("text between elements has no meaning here", at))?;
             }
             if !child.is_element() {
                 continue;
@@ -96,14 +96,14 @@ impl Parser<'_, '_> {
                 Ok(()) => {}
                 // Too deep or too many: going on would only repeat it.
                 Err(error @ SceneError::Limit { .. }) => return Err(error),
-                Err(error) => self.collect(error),
+                Err(error) => self.collect(error)?,
             }
         }
         Ok(())
     }
 
-    fn collect(&mut self, error: SceneError) {
-        self.context.report.errors.push(error);
+    fn collect(&mut self, error: SceneError) -> Result<(), SceneError> {
+        self.context.report.collect(error)
     }
 
     /// Takes in one XML element.
@@ -150,7 +150,7 @@ impl Parser<'_, '_> {
             self.context.report.warn(format!("`{name}` is given twice: the last one counts"), at);
         }
         object.values.push(name, value, at);
-        Ok(())
+        self.context.options.limits.check_params(object.values.len(), at)
     }
 
     /// Takes in an object and what it contains.

@@ -1,0 +1,120 @@
+//! How much memory a render will need, before it starts.
+//!
+//! A render that is killed after an hour because it was too large is worse than one that is refused at once. The estimate
+//! follows the data: what the files said stays until the scene is built, each mesh is copied once into the world's space
+//! and once into the leaves of the accelerator, pictures are kept as they are stored, and the film sums exactly.
+
+use std::path::Path;
+
+use aureole_desc::{Family, Mesh, SceneDesc, Value};
+use aureole_image::probe_image;
+use rustc_hash::FxHashSet;
+
+use crate::film::FilmTile;
+
+/// The program itself, its tables and the state of its workers.
+const BASE: u64 = 24 << 20;
+/// Bytes of a triangle in the accelerator, once it is built (measured over meshes of 10⁵ to 10⁷ triangles).
+const ACCEL_TRIANGLE: u64 = 76;
+/// Further bytes of a triangle while it is built: boxes, order, the binary tree before it is widened (measured likewise).
+const BUILD_TRIANGLE: u64 = 150;
+/// Bytes of any other shape or instance, with its boxes.
+const OTHER_SHAPE: u64 = 1024;
+/// An image is turned into the bytes of its file: floats, then what the encoder makes of them.
+const OUTPUT_PIXEL: u64 = 3 * 4 + 3 * 4;
+
+/// Bytes that a render will need, by what needs them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MemoryEstimate {
+    /// What the files said, kept until the scene is built.
+    pub description: u64,
+    /// Shapes as they are rendered.
+    pub shapes: u64,
+    /// The accelerator.
+    pub acceleration: u64,
+    /// What building the accelerator needs besides.
+    pub building: u64,
+    /// Textures and environment maps.
+    pub textures: u64,
+    /// The film, and the image that is written.
+    pub film: u64,
+}
+
+impl MemoryEstimate {
+    /// Estimates the memory of a description, once it is built and rendered.
+    pub fn new(desc: &SceneDesc, width: u32, height: u32) -> Self {
+        let pixels = u64::from(width) * u64::from(height);
+        let film = pixels * (FilmTile::BYTES_PER_PIXEL as u64 + OUTPUT_PIXEL);
+        let mut estimate = Self { film, ..Self::default() };
+        let mut shared: FxHashSet<*const Mesh> = FxHashSet::default();
+        let mut pictures: FxHashSet<&Path> = FxHashSet::default();
+        for (_, node) in desc.nodes() {
+            if node.family == Family::Shape {
+                estimate.shapes += OTHER_SHAPE;
+            }
+            for param in node.params.iter() {
+                match &param.value {
+                    Value::Mesh(mesh) => {
+                        let bytes = mesh_bytes(mesh);
+                        let triangles = mesh.indices.len() as u64;
+                        if shared.insert(std::sync::Arc::as_ptr(mesh)) {
+                            estimate.description += bytes;
+                        }
+                        estimate.shapes += bytes;
+                        estimate.acceleration += ACCEL_TRIANGLE * triangles;
+                        estimate.building += BUILD_TRIANGLE * triangles;
+                    }
+                    Value::Floats(list) => estimate.description += 4 * list.len() as u64,
+                    Value::Ints(list) => estimate.description += 4 * list.len() as u64,
+                    Value::Path(path) if pictures.insert(path) => {
+                        // Environment maps keep the distribution that they are sampled by beside the picture.
+                        let copies = if node.family == Family::Light { 2 } else { 1 };
+                        estimate.textures += copies * probe_image(path).map_or(0, |probe| probe.bytes());
+                    }
+                    _ => {}
+                }
+            }
+        }
+        estimate
+    }
+
+    /// The most at once: while the accelerator is built, or while the image is rendered.
+    pub fn peak(&self) -> u64 {
+        let kept = BASE + self.shapes + self.acceleration + self.textures;
+        kept + (self.description + self.building).max(self.film)
+    }
+}
+
+fn mesh_bytes(mesh: &Mesh) -> u64 {
+    let attributes: usize = mesh.attributes.iter().map(|attribute| 4 * attribute.data.len()).sum();
+    let vertices = 12 * (mesh.positions.len() + mesh.normals.len()) + 8 * mesh.uvs.len();
+    (vertices + 12 * mesh.indices.len() + attributes) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use aureole_desc::{Node, Params, Span};
+
+    use super::*;
+
+    #[test]
+    fn shared_meshes_are_described_once() {
+        let mesh = Arc::new(Mesh {
+            positions: vec![[0.0; 3]; 1000],
+            indices: vec![[0; 3]; 2000],
+            ..Mesh::default()
+        });
+        let mut desc = SceneDesc::default();
+        for _ in 0..2 {
+            let params = Params::new().with("mesh", Value::Mesh(mesh.clone()));
+            desc.add(Node::new(Family::Shape, "mesh", params, Span::NONE));
+        }
+        let estimate = MemoryEstimate::new(&desc, 100, 50);
+        assert_eq!(estimate.description, 36_000);
+        assert_eq!(estimate.acceleration, 4000 * ACCEL_TRIANGLE);
+        assert!(estimate.film > 5000 * 64);
+        assert!(estimate.peak() > BASE + 4000 * (ACCEL_TRIANGLE + BUILD_TRIANGLE));
+    }
+}
