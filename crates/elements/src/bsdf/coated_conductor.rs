@@ -30,11 +30,11 @@ impl Element for CoatedConductor {
     const SUMMARY: &'static str = "A metal under a dielectric coat, by a random walk between them.";
     const PARAMS: &'static [ParamDoc] = &{
         let [a, b, c, d, e, f, g, h, i, j] = COATING_PARAMS;
-        let [k, l, m, n, o, p] = METAL_PARAMS;
-        let q = ParamDoc { name: "base_alpha", ty: "texture", default: "0", doc: "the base's roughness" };
-        let r = ParamDoc { name: "base_alpha_u", default: "base_alpha", doc: "along the tangent", ..q };
-        let s = ParamDoc { name: "base_alpha_v", default: "base_alpha", doc: "across it", ..q };
-        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s]
+        let [k, l, m, n, o, p, q, r] = METAL_PARAMS;
+        let s = ParamDoc { name: "base_alpha", ty: "texture", default: "0", doc: "the base's roughness" };
+        let t = ParamDoc { name: "base_alpha_u", default: "base_alpha", doc: "along the tangent", ..s };
+        let u = ParamDoc { name: "base_alpha_v", default: "base_alpha", doc: "across it", ..s };
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u]
     };
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {

@@ -7,11 +7,14 @@
 //! | `reflectance` | texture | | reflectance at normal incidence, instead of an index |
 //! | `ext_eta` | float | 1 | index of the medium outside |
 //! | `specular_reflectance` | texture | 1 | factor |
+//! | `film_thickness` | texture | 0 | thickness in nanometres of a transparent film that makes colours by interference |
+//! | `film_ior` | float | 1.33 | index of the film over that outside |
 
 use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Id, Point2, Vector3};
 use aureole_spectrum::{Spectrum, SpectrumRole, SpectrumSource, metal, metals};
 
+use super::thin_film::{FILM_PARAMS, Film, FilmTexture};
 use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
 use crate::{Element, Resolver, Texture, TextureContext, spectrum_texture};
 
@@ -21,6 +24,7 @@ pub(super) struct Metallic {
     color: Color,
     ext_eta: f32,
     tint: Id<Texture>,
+    film: Option<FilmTexture>,
 }
 
 /// What decides how much a metal reflects.
@@ -41,7 +45,7 @@ fn absorption(reflectance: Spectrum) -> Spectrum {
 }
 
 /// Documentation of the parameters of metals.
-pub(super) const METAL_PARAMS: [ParamDoc; 6] = [
+pub(super) const METAL_PARAMS: [ParamDoc; 8] = [
     ParamDoc {
         name: "material",
         ty: "string",
@@ -58,13 +62,16 @@ pub(super) const METAL_PARAMS: [ParamDoc; 6] = [
     },
     ParamDoc { name: "ext_eta", ty: "float", default: "1", doc: "index of the medium outside" },
     ParamDoc { name: "specular_reflectance", ty: "texture", default: "1", doc: "factor" },
+    FILM_PARAMS[0],
+    FILM_PARAMS[1],
 ];
 
 impl Metallic {
     pub(super) fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
         let tint = spectrum_texture(params, resolver, "specular_reflectance", 1.0, SpectrumRole::Albedo)?;
         let ext_eta = params.float_in("ext_eta", 1.0, 0.1, 10.0)?;
-        let mut this = Self { color: Color::Mirror, ext_eta, tint };
+        let film = FilmTexture::from_params(params, resolver)?;
+        let mut this = Self { color: Color::Mirror, ext_eta, tint, film };
         let name = params.try_string("material")?;
         if name.as_deref() == Some("none") {
             return Ok(this);
@@ -101,7 +108,8 @@ impl Metallic {
             Color::Index([eta, k]) => Some([at.spectrum(eta), at.spectrum(k)]),
             Color::Reflectance(r) => Some([Spectrum::ONE, absorption(at.spectrum(r))]),
         };
-        Metal { index, tint: at.spectrum(self.tint) }.below(self.ext_eta)
+        let film = self.film.and_then(|film| film.at(at));
+        Metal { index, tint: at.spectrum(self.tint), film }.below(self.ext_eta)
     }
 }
 
@@ -112,6 +120,8 @@ pub struct Metal {
     pub index: Option<[Spectrum; 2]>,
     /// Factor.
     pub tint: Spectrum,
+    /// A transparent film on it.
+    pub film: Option<Film>,
 }
 
 impl Metal {
@@ -125,7 +135,10 @@ impl Metal {
     #[inline]
     pub fn reflectance(&self, cos_i: f32) -> Spectrum {
         match self.index {
-            Some([eta, k]) => fresnel::conductor(cos_i, eta, k) * self.tint,
+            Some([eta, k]) => {
+                let bare = || fresnel::conductor(cos_i, eta, k);
+                self.film.map_or_else(bare, |film| film.reflectance(cos_i, eta, k)) * self.tint
+            }
             None => self.tint,
         }
     }

@@ -6,17 +6,21 @@
 //! | `ext_ior` | float or string | air | index outside |
 //! | `specular_reflectance` | texture | 1 | factor on what is reflected |
 //! | `specular_transmittance` | texture | 1 | factor on what passes |
+//! | `film_thickness` | texture | 0 | thickness in nanometres of a transparent film that makes colours by interference |
+//! | `film_ior` | float | 1.33 | index of the film over that outside |
 
 use aureole_desc::{ParamDoc, Params, SceneError, Value};
 use aureole_math::{Id, Point2, Vector3};
 use aureole_spectrum::{Spectrum, SpectrumRole, dielectric_ior, dielectrics};
 
+use super::fresnel::DielectricFresnel;
 use super::lobe::Sides;
+use super::thin_film::{FILM_PARAMS, Film, FilmTexture};
 use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
 use crate::{Element, Resolver, Texture, TextureContext, spectrum_texture};
 
-/// Documentation of the parameters of dielectrics.
-pub(super) const DIELECTRIC_PARAMS: [ParamDoc; 4] = [
+/// Documentation of the parameters that all dielectrics share.
+pub(super) const BOUNDARY_PARAMS: [ParamDoc; 4] = [
     ParamDoc {
         name: "int_ior",
         ty: "float or name",
@@ -56,7 +60,8 @@ pub(super) fn relative_ior(params: &mut Params, default: &str) -> Result<f32, Sc
 /// What all dielectrics share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boundary {
-    eta: f32,
+    /// Index inside over outside.
+    pub eta: f32,
     reflectance: Id<Texture>,
     transmittance: Id<Texture>,
 }
@@ -78,6 +83,7 @@ impl Boundary {
             eta: self.eta,
             reflectance: at.spectrum(self.reflectance),
             transmittance: at.spectrum(self.transmittance),
+            film: None,
         }
     }
 }
@@ -91,26 +97,57 @@ pub struct Glass {
     pub reflectance: Spectrum,
     /// Factor on what passes.
     pub transmittance: Spectrum,
+    /// A transparent film on it.
+    pub film: Option<Film>,
+}
+
+impl Glass {
+    /// The share of light that the boundary reflects, in colour if there is a film; and what it does without one.
+    #[inline]
+    pub(super) fn fresnel(&self, cos: f32) -> (Spectrum, DielectricFresnel) {
+        let bare = fresnel::dielectric(cos, self.eta);
+        let Some(film) = self.film else { return (Spectrum::splat(bare.reflectance), bare) };
+        // A film reflects as much light from below as from above on the same path.
+        let above = if cos >= 0.0 { cos } else { bare.cos_t.abs() };
+        if bare.cos_t == 0.0 {
+            return (Spectrum::ONE, bare);
+        }
+        (film.reflectance(above, Spectrum::splat(self.eta), Spectrum::ZERO), bare)
+    }
+
+    /// All light that is reflected or passes.
+    pub(super) fn albedo(&self, cos: f32) -> Spectrum {
+        let (f, _) = self.fresnel(cos);
+        self.reflectance * f + self.transmittance * (Spectrum::ONE - f)
+    }
 }
 
 /// Smooth glass.
 #[derive(Clone, Copy, Debug)]
 pub struct Dielectric {
     boundary: Boundary,
+    film: Option<FilmTexture>,
 }
 
 impl Element for Dielectric {
     const SUMMARY: &'static str = "Smooth glass, water, diamond.";
-    const PARAMS: &'static [ParamDoc] = &DIELECTRIC_PARAMS;
+    const PARAMS: &'static [ParamDoc] = &{
+        let [a, b, c, d] = BOUNDARY_PARAMS;
+        let [e, f] = FILM_PARAMS;
+        [a, b, c, d, e, f]
+    };
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
-        Ok(Self { boundary: Boundary::from_params(params, resolver)? })
+        let boundary = Boundary::from_params(params, resolver)?;
+        Ok(Self { boundary, film: FilmTexture::from_params(params, resolver)? })
     }
 }
 
 impl MaterialOps for Dielectric {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
-        out.push(DielectricLobe { glass: self.boundary.at(&at.texture) }, weight, at.frame, at.frame.n);
+        let film = self.film.and_then(|film| film.at(&at.texture));
+        let glass = Glass { film, ..self.boundary.at(&at.texture) };
+        out.push(DielectricLobe { glass }, weight, at.frame, at.frame.n);
     }
 }
 
@@ -140,8 +177,7 @@ impl LobeOps for DielectricLobe {
     }
 
     fn albedo(&self, wo: Vector3) -> Spectrum {
-        let f = fresnel::dielectric(wo.z, self.glass.eta).reflectance;
-        self.glass.reflectance * f + self.glass.transmittance * (1.0 - f)
+        self.glass.albedo(wo.z)
     }
 }
 
@@ -155,14 +191,14 @@ impl DielectricLobe {
         uc: f32,
         mode: TransportMode,
     ) -> Option<LobeSample> {
-        let f = fresnel::dielectric(wo.z, self.glass.eta);
-        let p = sides.reflection_probability(f.reflectance)?;
+        let (reflectance, f) = self.glass.fresnel(wo.z);
+        let p = sides.reflection_probability(reflectance.average())?;
         if wo.z == 0.0 {
             return None;
         }
         if uc < p {
             let wi = Vector3::new(-wo.x, -wo.y, wo.z);
-            let value = self.glass.reflectance * (f.reflectance / wi.z.abs());
+            let value = self.glass.reflectance * reflectance / wi.z.abs();
             return Some(LobeSample {
                 wi,
                 value,
@@ -175,7 +211,7 @@ impl DielectricLobe {
         let wi = Vector3::new(-wo.x * scale, -wo.y * scale, f.cos_t);
         // Refraction squeezes a pencil of radiance by the square of the relative index.
         let squeeze = if mode == TransportMode::Radiance { scale * scale } else { 1.0 };
-        let value = self.glass.transmittance * (squeeze * (1.0 - f.reflectance) / wi.z.abs());
+        let value = self.glass.transmittance * (Spectrum::ONE - reflectance) * (squeeze / wi.z.abs());
         let flags = LobeFlags::DELTA_TRANSMISSION;
         Some(LobeSample { wi, value, pdf_omega: 1.0 - p, flags, eta: f.eta_path })
     }

@@ -170,7 +170,8 @@ fn upright(wo: Vector3, wi: Vector3) -> Option<[Vector3; 2]> {
 
 impl LayeredLobe {
     fn coat(&self) -> Coat {
-        let glass = Glass { eta: self.eta, reflectance: Spectrum::ONE, transmittance: Spectrum::ONE };
+        let glass =
+            Glass { eta: self.eta, reflectance: Spectrum::ONE, transmittance: Spectrum::ONE, film: None };
         match self.coat {
             Some(surface) => Coat::Rough(RoughDielectricLobe { glass, surface }),
             None => Coat::Smooth(DielectricLobe { glass }),

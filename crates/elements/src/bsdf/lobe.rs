@@ -4,9 +4,9 @@ use aureole_math::{Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
 use super::{
-    ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, HairLobe, LayeredLobe, NullLobe,
-    PlasticLobe, PrincipledLobe, PrincipledThinLobe, RoughConductorLobe, RoughDielectricLobe,
-    RoughPlasticLobe, ThinDielectricLobe,
+    ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, HairLobe, LayeredLobe, MeasuredLobe,
+    MerlLobe, NullLobe, PlasticLobe, PrincipledLobe, PrincipledThinLobe, RoughConductorLobe,
+    RoughDielectricLobe, RoughPlasticLobe, SheenLobe, ThinDielectricLobe,
 };
 
 /// What travels along a path: refraction squeezes radiance, but not importance.
@@ -119,8 +119,8 @@ pub trait LobeOps {
 /// Lists the lobes: makes the enum and its static dispatch.
 macro_rules! lobes {
     ($($Variant:ident($Type:ident)),* $(,)?) => {
-        /// Any lobe: a plain value without references.
-        #[derive(Clone, Copy, Debug)]
+        /// Any lobe: a plain value; measured ones share their tables.
+        #[derive(Clone, Debug)]
         #[expect(missing_docs, reason = "each is documented at its type")]
         pub enum Lobe { $($Variant($Type)),* }
 
@@ -184,5 +184,8 @@ lobes! {
     PrincipledThin(PrincipledThinLobe),
     Layered(LayeredLobe),
     Hair(HairLobe),
+    Sheen(SheenLobe),
+    Measured(MeasuredLobe),
+    Merl(MerlLobe),
     Null(NullLobe),
 }

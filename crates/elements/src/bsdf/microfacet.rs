@@ -217,7 +217,8 @@ fn erf_inv(x: f32) -> f32 {
 /// The parameters that rough materials share: a distribution and textures for its widths.
 #[derive(Clone, Copy, Debug)]
 pub struct Roughness {
-    distribution: Distribution,
+    /// The slope distribution.
+    pub(super) distribution: Distribution,
     alpha_u: Id<Texture>,
     alpha_v: Id<Texture>,
 }
@@ -229,6 +230,14 @@ pub const ROUGHNESS_PARAMS: [ParamDoc; 4] = [
     ParamDoc { name: "alpha_u", ty: "texture", default: "alpha", doc: "roughness along the tangent" },
     ParamDoc { name: "alpha_v", ty: "texture", default: "alpha", doc: "roughness across it" },
 ];
+
+/// Documentation of the switch of energy compensation.
+pub(super) const COMPENSATION_PARAM: ParamDoc = ParamDoc {
+    name: "energy_compensation",
+    ty: "bool",
+    default: "false",
+    doc: "give back what light loses that meets several facets",
+};
 
 /// The distribution that the parameters name.
 pub(super) fn distribution(params: &mut Params) -> Result<Distribution, SceneError> {

@@ -12,6 +12,7 @@ mod conductor;
 mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
+mod directional;
 mod disney;
 pub mod fresnel;
 mod hair;
@@ -19,6 +20,8 @@ mod hair_lobe;
 mod layered;
 mod lobe;
 mod mask;
+mod measured;
+mod merl;
 pub mod microfacet;
 mod normal_map;
 mod null;
@@ -29,8 +32,10 @@ mod principled_thin;
 mod rough_conductor;
 mod rough_dielectric;
 mod rough_plastic;
+mod sheen;
 mod stack;
 mod thin_dielectric;
+mod thin_film;
 mod two_sided;
 
 use std::fmt::Debug;
@@ -53,6 +58,8 @@ pub use hair_lobe::HairLobe;
 pub use layered::{Base, LayeredLobe};
 pub use lobe::{Lobe, LobeFlags, LobeOps, LobeSample, TransportMode};
 pub use mask::Mask;
+pub use measured::{Measured, MeasuredLobe};
+pub use merl::{Merl, MerlLobe};
 pub use normal_map::NormalMap;
 pub use null::{Null, NullLobe};
 pub use plastic::{Plastic, PlasticLobe};
@@ -61,8 +68,10 @@ pub use principled_thin::{PrincipledThin, PrincipledThinLobe};
 pub use rough_conductor::{RoughConductor, RoughConductorLobe};
 pub use rough_dielectric::{RoughDielectric, RoughDielectricLobe};
 pub use rough_plastic::{RoughPlastic, RoughPlasticLobe};
+pub use sheen::{Sheen, SheenLobe};
 pub use stack::{Bsdf, BsdfSample};
 pub use thin_dielectric::{ThinDielectric, ThinDielectricLobe};
+pub use thin_film::Film;
 pub use two_sided::TwoSided;
 
 /// Where a material is evaluated.
@@ -114,7 +123,10 @@ registry! {
     coated_conductor::CoatedConductor as CoatedConductor = "coated_conductor",
     principled::Principled as Principled = "principled",
     principled_thin::PrincipledThin as PrincipledThin = "principled_thin",
+    measured::Measured as Measured = "measured",
+    merl::Merl as Merl = "merl",
     hair::Hair as Hair = "hair",
+    sheen::Sheen as Sheen = "sheen",
     two_sided::TwoSided as TwoSided = "two_sided",
     mask::Mask as Mask = "mask",
     blend::Blend as Blend = "blend",

@@ -1,6 +1,10 @@
 //! `rough_dielectric`: frosted glass, by microfacets.
 //!
-//! Parameters: those of `dielectric`, and `distribution`, `alpha`, `alpha_u`, `alpha_v`.
+//! Parameters: those of `dielectric`; `distribution`, `alpha`, `alpha_u`, `alpha_v`; and
+//!
+//! | parameter | type | default | meaning |
+//! |---|---|---|---|
+//! | `energy_compensation` | bool | false | give back what light loses that meets several facets |
 //!
 //! References: [Walter et al. 2007] "Microfacet Models for Refraction through Rough Surfaces", equations 20, 21.
 
@@ -8,39 +12,53 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point2, Vector3, reflect, refract};
 use aureole_spectrum::Spectrum;
 
-use super::dielectric::{Boundary, DIELECTRIC_PARAMS, Glass};
+use super::dielectric::{BOUNDARY_PARAMS, Boundary, Glass};
+use super::directional::AlbedoTable;
 use super::lobe::Sides;
-use super::microfacet::{Microfacet, ROUGHNESS_PARAMS, Roughness};
-use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
+use super::microfacet::{COMPENSATION_PARAM, Microfacet, ROUGHNESS_PARAMS, Roughness};
+use super::thin_film::{FILM_PARAMS, FilmTexture};
+use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode};
 use crate::{Element, Resolver};
 
 /// Frosted glass.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct RoughDielectric {
     boundary: Boundary,
+    film: Option<FilmTexture>,
     roughness: Roughness,
+    /// What leaves after one scattering, seen from above and from below; none unless that is made up for.
+    once: Option<[AlbedoTable; 2]>,
 }
 
 impl Element for RoughDielectric {
     const SUMMARY: &'static str = "Frosted glass.";
     const PARAMS: &'static [ParamDoc] = &{
-        let [a, b, c, d] = DIELECTRIC_PARAMS;
-        let [e, f, g, h] = ROUGHNESS_PARAMS;
-        [a, b, c, d, e, f, g, h]
+        let [a, b, c, d] = BOUNDARY_PARAMS;
+        let [e, f] = FILM_PARAMS;
+        let [g, h, i, j] = ROUGHNESS_PARAMS;
+        [a, b, c, d, e, f, g, h, i, j, COMPENSATION_PARAM]
     };
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
         let boundary = Boundary::from_params(params, resolver)?;
-        Ok(Self { boundary, roughness: Roughness::from_params(params, resolver)? })
+        let roughness = Roughness::from_params(params, resolver)?;
+        let table = |eta| AlbedoTable::boundary(roughness.distribution, eta);
+        let is_compensated = params.bool("energy_compensation", false)?;
+        let once = is_compensated.then(|| [table(boundary.eta), table(1.0 / boundary.eta)]);
+        Ok(Self { boundary, film: FilmTexture::from_params(params, resolver)?, roughness, once })
     }
 }
 
 impl MaterialOps for RoughDielectric {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
-        let lobe = RoughDielectricLobe {
-            glass: self.boundary.at(&at.texture),
-            surface: self.roughness.at(&at.texture),
-        };
+        let (mut glass, surface) = (self.boundary.at(&at.texture), self.roughness.at(&at.texture));
+        glass.film = self.film.and_then(|film| film.at(&at.texture));
+        if let Some([above, below]) = &self.once {
+            let cos = at.wo.dot(at.frame.n);
+            let once = if cos > 0.0 { above } else { below }.at(&surface, cos.abs());
+            (glass.reflectance, glass.transmittance) = (glass.reflectance / once, glass.transmittance / once);
+        }
+        let lobe = RoughDielectricLobe { glass, surface };
         out.push(lobe, weight, at.frame, at.frame.n);
     }
 }
@@ -89,15 +107,16 @@ impl LobeOps for RoughDielectricLobe {
     fn eval(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> Spectrum {
         let Some(facet) = self.facet(wo, wi) else { return Spectrum::ZERO };
         let m = facet.m;
-        let f = fresnel::dielectric(wo.dot(m), self.glass.eta).reflectance;
+        let f = self.glass.fresnel(wo.dot(m)).0;
         let facets = self.surface.d(m) * self.surface.g(wo, wi, m) / (wo.z * wi.z).abs();
         if facet.is_reflection {
-            return self.glass.reflectance * (f * facets * 0.25);
+            return self.glass.reflectance * f * (facets * 0.25);
         }
         let denominator = (wo.dot(m) / facet.eta_path + wi.dot(m)).powi(2);
         let squeeze = if mode == TransportMode::Radiance { facet.eta_path.powi(-2) } else { 1.0 };
         self.glass.transmittance
-            * ((1.0 - f) * facets * (wo.dot(m) * wi.dot(m)).abs() / denominator * squeeze)
+            * (Spectrum::ONE - f)
+            * (facets * (wo.dot(m) * wi.dot(m)).abs() / denominator * squeeze)
     }
 
     #[inline]
@@ -111,8 +130,7 @@ impl LobeOps for RoughDielectricLobe {
     }
 
     fn albedo(&self, wo: Vector3) -> Spectrum {
-        let f = fresnel::dielectric(wo.z, self.glass.eta).reflectance;
-        self.glass.reflectance * f + self.glass.transmittance * (1.0 - f)
+        self.glass.albedo(wo.z)
     }
 }
 
@@ -131,7 +149,7 @@ impl RoughDielectricLobe {
             return None;
         }
         let m = self.surface.sample_visible(Self::above(wo), u);
-        let f = fresnel::dielectric(wo.dot(m), self.glass.eta).reflectance;
+        let f = self.glass.fresnel(wo.dot(m)).0.average();
         let (wi, flags, eta) = if uc < sides.reflection_probability(f)? {
             (reflect(wo, m), LobeFlags::REFLECTION, 1.0)
         } else {
@@ -150,7 +168,7 @@ impl RoughDielectricLobe {
     pub(super) fn pdf_from(&self, sides: Sides, wo: Vector3, wi: Vector3) -> f32 {
         let Some(facet) = self.facet(wo, wi) else { return 0.0 };
         let m = facet.m;
-        let f = fresnel::dielectric(wo.dot(m), self.glass.eta).reflectance;
+        let f = self.glass.fresnel(wo.dot(m)).0.average();
         let Some(p) = sides.reflection_probability(f) else { return 0.0 };
         let pdf_m = self.surface.pdf_visible(Self::above(wo), m);
         if facet.is_reflection {

@@ -7,9 +7,10 @@
 use std::f32::consts::FRAC_1_PI;
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::{Point2, Vector3, reflect, refract, warp};
+use aureole_math::{Point2, Vector3, reflect, warp};
 use aureole_spectrum::Spectrum;
 
+use super::directional::{reflectance, transmittance};
 use super::microfacet::{self, Microfacet};
 use super::plastic::{Coat, Coated, PLASTIC_PARAMS};
 use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
@@ -17,8 +18,6 @@ use crate::{Element, Resolver};
 
 /// Entries of a table over the square root of the cosine, which is steepest at grazing angles.
 const ENTRIES: usize = 24;
-/// Points of the quadrature in each dimension.
-const QUADRATURE: usize = 32;
 
 /// A table of shares in [0, 1], in steps of 1/65535: lobes are copied, so they are kept small.
 type Transmittance = [u16; ENTRIES];
@@ -30,63 +29,6 @@ pub struct RoughPlastic {
     surface: Microfacet,
     transmittance: Transmittance,
     internal: f32,
-}
-
-/// Nodes in [0, 1] and weights that sum to one of Gauss and Legendre's quadrature.
-fn gauss_legendre() -> [[f32; 2]; QUADRATURE] {
-    let n = QUADRATURE as f64;
-    std::array::from_fn(|i| {
-        // Newton's method from Tricomi's guess; the recurrence gives the polynomial and its derivative.
-        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..20 {
-            let (mut p, mut previous) = (x, 1.0);
-            for k in 2..=QUADRATURE {
-                let k = k as f64;
-                (p, previous) = (((2.0 * k - 1.0) * x * p - (k - 1.0) * previous) / k, p);
-            }
-            slope = n * (x * p - previous) / (x * x - 1.0);
-            x -= p / slope;
-        }
-        [(0.5 + 0.5 * x) as f32, (1.0 / ((1.0 - x * x) * slope * slope)) as f32]
-    })
-}
-
-/// The mean over visible normals of what one facet passes on, for light from `wo`.
-fn average(surface: &Microfacet, wo: Vector3, facet: impl Fn(Vector3) -> f32) -> f32 {
-    let nodes = gauss_legendre();
-    let mut sum = 0.0;
-    for [x, weight_x] in nodes {
-        for [y, weight_y] in nodes {
-            sum += weight_x * weight_y * facet(surface.sample_visible(wo, Point2::new(x, y)));
-        }
-    }
-    sum
-}
-
-fn direction(cos: f32) -> Vector3 {
-    Vector3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos)
-}
-
-/// The share of light from above that gets below the rough boundary.
-fn transmittance(surface: &Microfacet, cos: f32, eta: f32) -> f32 {
-    let wo = direction(cos);
-    average(surface, wo, |m| match refract(wo, m, eta) {
-        Some(refraction) if refraction.wt.z < 0.0 => {
-            let f = fresnel::dielectric(wo.dot(m), eta).reflectance;
-            (1.0 - f) * surface.g1(refraction.wt, m)
-        }
-        _ => 0.0,
-    })
-}
-
-/// The share of light that the rough boundary reflects.
-fn reflectance(surface: &Microfacet, cos: f32, eta: f32) -> f32 {
-    let wo = direction(cos);
-    average(surface, wo, |m| {
-        let wi = reflect(wo, m);
-        if wi.z <= 0.0 { 0.0 } else { fresnel::dielectric(wo.dot(m), eta).reflectance * surface.g1(wi, m) }
-    })
 }
 
 /// The mean reflectance of the rough boundary under even light from below.

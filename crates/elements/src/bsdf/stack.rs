@@ -10,7 +10,7 @@ use super::{Lobe, LobeFlags, LobeOps, TransportMode};
 const MAX_LOBES: usize = 4;
 
 /// A lobe with its share of the whole and its place.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Placed {
     lobe: Lobe,
     weight: f32,

@@ -1,6 +1,6 @@
 //! `thin_dielectric`: a thin pane of glass: light passes without bending.
 //!
-//! Parameters: those of `dielectric`.
+//! Parameters: those of `dielectric` but the film.
 //!
 //! All orders of reflection between the two faces are summed: R' = R + T²R / (1 - R²) = 2R / (1 + R).
 
@@ -8,7 +8,7 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
-use super::dielectric::{Boundary, DIELECTRIC_PARAMS, Glass};
+use super::dielectric::{BOUNDARY_PARAMS, Boundary, Glass};
 use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
 use crate::{Element, Resolver};
 
@@ -20,7 +20,7 @@ pub struct ThinDielectric {
 
 impl Element for ThinDielectric {
     const SUMMARY: &'static str = "A thin pane of glass: light passes without bending.";
-    const PARAMS: &'static [ParamDoc] = &DIELECTRIC_PARAMS;
+    const PARAMS: &'static [ParamDoc] = &BOUNDARY_PARAMS;
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
         Ok(Self { boundary: Boundary::from_params(params, resolver)? })

@@ -1,6 +1,6 @@
 //! Mesh files: bytes to [`Mesh`](aureole_desc::Mesh). No count in a file is believed before it is held against the bytes that are left.
 
-mod error;
+pub(crate) mod error;
 mod normals;
 pub mod obj;
 pub mod ply;

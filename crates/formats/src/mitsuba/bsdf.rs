@@ -6,6 +6,7 @@ use aureole_spectrum::SpectrumSource;
 use super::scope::Scope;
 use super::translate::Translator;
 use super::tree::Tag;
+use crate::brdf;
 
 /// Mitsuba's plugins and Aureole's words for them. Not all of the latter can be rendered yet.
 const KINDS: &[(&str, &str)] = &[
@@ -39,7 +40,7 @@ pub(super) fn translate<'a>(
     t: &mut Translator<'a, '_, '_>,
     mut scope: Scope<'a>,
 ) -> Result<NodeId, SceneError> {
-    let kind = t.kind(&scope, Family::Bsdf, KINDS)?;
+    let mut kind = t.kind(&scope, Family::Bsdf, KINDS)?;
     // How normals are sampled changes noise, not pictures.
     scope.ignore(&["sample_visible"]);
     match scope.object.plugin.as_str() {
@@ -62,7 +63,13 @@ pub(super) fn translate<'a>(
             let message = "`pplastic` is rendered as `plastic`: polarisation is not carried";
             t.context.report.warn(message, scope.span());
         }
-        "measured" | "measured_polarized" => t.put_path(&mut scope)?,
+        "measured" => {
+            let (path, at) = t.path(&mut scope, "filename")?;
+            let (found, params) = brdf::read(&path, &t.context.options.limits, at)?;
+            kind = found;
+            params.iter().for_each(|param| scope.out.set(param.clone()));
+        }
+        "measured_polarized" => t.put_path(&mut scope)?,
         "twosided" => {
             t.put_required(&mut scope, "bsdf", Tag::Bsdf)?;
             if let Some(back) = scope.take_child(&[Tag::Bsdf]) {

@@ -5,6 +5,7 @@ use aureole_spectrum::{SpectrumRole, SpectrumSource, named_spectrum};
 
 use super::params::ParamSet;
 use super::state::{Reader, unknown};
+use crate::brdf;
 
 const KINDS: &[&str] = &[
     "coatedconductor",
@@ -63,7 +64,8 @@ impl Reader<'_, '_> {
             "interface" | "none" | "" => ("null", Params::new()),
             "coatedconductor" => self.coated_conductor(given)?,
             "hair" => ("hair", self.hair(given)?),
-            "subsurface" | "measured" => self.placeholder(kind, given)?,
+            "measured" => self.measured(given)?,
+            "subsurface" => self.placeholder(kind, given)?,
             _ => {
                 let known = KINDS.iter().map(|k| (*k).to_owned()).collect();
                 return Err(SceneError::UnknownKind {
@@ -77,7 +79,7 @@ impl Reader<'_, '_> {
         let mut id = self.add(Family::Bsdf, name, params, at);
         id = self.bumps(id, given)?;
         given.finish(&format!("material `{kind}`"), self.context.report);
-        if matches!(name, "diffuse" | "conductor" | "rough_conductor" | "plastic" | "rough_plastic") {
+        if matches!(name, "diffuse" | "conductor" | "rough_conductor" | "measured" | "merl") {
             id = self.add(Family::Bsdf, "two_sided", Params::new().with("bsdf", Value::Node(id)), at);
         }
         Ok(id)
@@ -264,6 +266,17 @@ impl Reader<'_, '_> {
         params.push("base_alpha_u", u, given.span);
         params.push("base_alpha_v", v, given.span);
         Ok(("coated_conductor", params))
+    }
+
+    fn measured(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let at = given.at("filename");
+        let path = given.path("filename", self)?.ok_or_else(|| SceneError::MissingParam {
+            element: "material `measured`".into(),
+            param: "filename".into(),
+            wanted: "a file of a measured reflectance".into(),
+            at,
+        })?;
+        brdf::read(&path, &self.context.options.limits, at)
     }
 
     fn hair(&mut self, given: &ParamSet) -> Result<Params, SceneError> {
