@@ -13,7 +13,7 @@ use crate::Accuracy;
 use crate::simd::Simd;
 
 /// Triangles in a block.
-pub(crate) const LANES: usize = 4;
+pub(crate) const LANES: usize = 8;
 
 /// Triangles side by side. Unused lanes hold NaN, which nothing hits.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]

@@ -214,6 +214,6 @@ impl Collapse<'_> {
         let place = part.groups.len() as u32;
         let (end, lanes) = (first + count, self.costs.lanes);
         part.groups.extend((first..end).step_by(lanes).map(|i| [i, (end - i).min(lanes as u32)]));
-        LEAF | place << COUNT_BITS | part.groups.len() as u32 - place
+        LEAF | (place << COUNT_BITS) | (part.groups.len() as u32 - place)
     }
 }

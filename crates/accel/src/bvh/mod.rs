@@ -4,6 +4,7 @@ mod binned;
 mod build;
 mod collapse;
 mod node;
+mod reinsert;
 mod traverse;
 mod tree;
 

@@ -60,6 +60,10 @@ pub(crate) struct Extent {
 impl Extent {
     pub(crate) const EMPTY: Self = Self { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY };
 
+    pub(crate) fn from(bounds: &Bounds3) -> Self {
+        Item::new(bounds, 0).bounds()
+    }
+
     #[inline(always)]
     pub(crate) fn union(&self, other: &Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }

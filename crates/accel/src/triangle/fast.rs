@@ -30,16 +30,16 @@ impl TriangleTest for Fast {
 
     #[inline(always)]
     fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> BlockHits {
-        let [a, e1, e2]: [[S::F4; 3]; 3] =
+        let [a, e1, e2]: [[S::F8; 3]; 3] =
             [load3(&block.corners[0]), load3(&block.corners[1]), load3(&block.corners[2])];
-        let (o, d): ([S::F4; 3], [S::F4; 3]) = (splat3(self.origin), splat3(self.direction));
+        let (o, d): ([S::F8; 3], [S::F8; 3]) = (splat3(self.origin), splat3(self.direction));
         let from_a = [o[0] - a[0], o[1] - a[1], o[2] - a[2]];
         let (p, q) = (cross(d, e2), cross(from_a, e1));
         // A vanishing determinant makes all of them infinite or NaN, which are in no range.
-        let inv = S::F4::splat(1.0) / dot(p, e1);
+        let inv = S::F8::splat(1.0) / dot(p, e1);
         let (u, v, t) = (dot(p, from_a) * inv, dot(q, d) * inv, dot(q, e2) * inv);
-        let inside = S::F4::splat(0.0).less_or_equal(u.min(v)) & (u + v).less_or_equal(S::F4::splat(1.0));
-        let in_range = S::F4::splat(self.t_min).less(t) & t.less_or_equal(S::F4::splat(t_max));
+        let inside = S::F8::splat(0.0).less_or_equal(u.min(v)) & (u + v).less_or_equal(S::F8::splat(1.0));
+        let in_range = S::F8::splat(self.t_min).less(t) & t.less_or_equal(S::F8::splat(t_max));
         let mask = (inside & in_range).bits();
         if mask == 0 {
             return BlockHits::NONE;

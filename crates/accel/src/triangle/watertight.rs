@@ -38,15 +38,15 @@ impl TriangleTest for Watertight {
 
     #[inline(always)]
     fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> BlockHits {
-        let shear = splat3::<LANES, S::F4>(self.shear);
-        let origin = splat3::<LANES, S::F4>(self.origin);
+        let shear = splat3::<LANES, S::F8>(self.shear);
+        let origin = splat3::<LANES, S::F8>(self.origin);
         // Vertices relative to the origin, sheared.
         let [x0, y0, z0] = self.relative(&block.corners[0], shear, origin);
         let [x1, y1, z1] = self.relative(&block.corners[1], shear, origin);
         let [x2, y2, z2] = self.relative(&block.corners[2], shear, origin);
         // Twice the signed areas between the ray and each edge; outside where their signs differ.
         let (u, v, w) = (x2 * y1 - y2 * x1, x0 * y2 - y0 * x2, x1 * y0 - y1 * x0);
-        let zero = S::F4::splat(0.0);
+        let zero = S::F8::splat(0.0);
         let mut inside = same_signs(u, v, w);
         if inside == 0 {
             return BlockHits::NONE;
@@ -63,11 +63,11 @@ impl TriangleTest for Watertight {
         }
         let [u, v, w] = edges;
         let det = u + v + w;
-        let inv = S::F4::splat(1.0) / det;
+        let inv = S::F8::splat(1.0) / det;
         let z = [shear[2] * z0, shear[2] * z1, shear[2] * z2];
         let t = (u * z[0] + v * z[1] + w * z[2]) * inv;
         // A vanishing determinant makes t infinite or NaN, which is in no range.
-        let in_range = S::F4::splat(self.t_min).less(t) & t.less_or_equal(S::F4::splat(t_max));
+        let in_range = S::F8::splat(self.t_min).less(t) & t.less_or_equal(S::F8::splat(t_max));
         inside &= in_range.bits();
         if inside == 0 {
             return BlockHits::NONE;
