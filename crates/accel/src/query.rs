@@ -12,6 +12,24 @@ use crate::triangle::{Fast, TriangleTest, Watertight};
 use crate::world::Object;
 use crate::{Accuracy, Hit, NO_INSTANCE, Structure, UserShapes, World};
 
+/// The nearest hit of one ray.
+#[inline]
+pub(crate) fn closest_hit<U: UserShapes>(world: &World, ray: &Ray, user: &U) -> Hit {
+    match world.accuracy {
+        Accuracy::Watertight => simd::run(ClosestOne::<U, Watertight>(world, ray, user, PhantomData)),
+        Accuracy::Fast => simd::run(ClosestOne::<U, Fast>(world, ray, user, PhantomData)),
+    }
+}
+
+/// Whether one ray hits anything.
+#[inline]
+pub(crate) fn is_occluded<U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
+    match world.accuracy {
+        Accuracy::Watertight => simd::run(OccludedOne::<U, Watertight>(world, ray, user, PhantomData)),
+        Accuracy::Fast => simd::run(OccludedOne::<U, Fast>(world, ray, user, PhantomData)),
+    }
+}
+
 /// The nearest hits of rays.
 pub(crate) fn closest_hits<U: UserShapes>(world: &World, rays: &[Ray], hits: &mut [Hit], user: &U) {
     match world.accuracy {
@@ -25,6 +43,26 @@ pub(crate) fn occluded<U: UserShapes>(world: &World, rays: &[Ray], blocked: &mut
     match world.accuracy {
         Accuracy::Watertight => simd::run(Occluded::<U, Watertight>(world, rays, blocked, user, PhantomData)),
         Accuracy::Fast => simd::run(Occluded::<U, Fast>(world, rays, blocked, user, PhantomData)),
+    }
+}
+
+struct ClosestOne<'a, U, T>(&'a World, &'a Ray, &'a U, PhantomData<T>);
+
+impl<U: UserShapes, T: TriangleTest> Kernel for ClosestOne<'_, U, T> {
+    type Output = Hit;
+    #[inline(always)]
+    fn run<S: Simd>(self) -> Hit {
+        closest::<S, T, U>(self.0, self.1, self.2)
+    }
+}
+
+struct OccludedOne<'a, U, T>(&'a World, &'a Ray, &'a U, PhantomData<T>);
+
+impl<U: UserShapes, T: TriangleTest> Kernel for OccludedOne<'_, U, T> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<S: Simd>(self) -> bool {
+        any::<S, T, U>(self.0, self.1, self.2)
     }
 }
 
@@ -113,6 +151,7 @@ struct Candidate {
 }
 
 impl Candidate {
+    #[inline(always)]
     fn hit(&self, world: &World) -> Hit {
         let (geometry, primitive) = world.triangle_of(self.id);
         Hit { t: self.t, u: self.u, v: self.v, primitive, geometry, instance: NO_INSTANCE }

@@ -85,9 +85,12 @@ impl World {
     }
 
     /// The geometry and the number in it of a triangle of this level.
+    #[inline(always)]
     pub(crate) fn triangle_of(&self, id: u32) -> (u32, u32) {
-        let mesh = self.meshes.partition_point(|[first, _]| *first <= id) - 1;
-        let [first, geometry] = self.meshes[mesh];
+        let [first, geometry] = match self.meshes[..] {
+            [only] => only,
+            _ => self.meshes[self.meshes.partition_point(|[first, _]| *first <= id) - 1],
+        };
         (geometry, id - first)
     }
 
@@ -144,17 +147,16 @@ impl World {
     }
 
     /// The nearest hit of a ray in `(t_min, t_max)`.
+    #[inline]
     pub fn closest_hit<U: UserShapes>(&self, ray: &Ray, user: &U) -> Option<Hit> {
-        let mut hit = [Hit::NONE];
-        query::closest_hits(self, std::slice::from_ref(ray), &mut hit, user);
-        hit[0].is_some().then_some(hit[0])
+        let hit = query::closest_hit(self, ray, user);
+        hit.is_some().then_some(hit)
     }
 
     /// Whether anything lies on the ray in `(t_min, t_max)`.
+    #[inline]
     pub fn occluded<U: UserShapes>(&self, ray: &Ray, user: &U) -> bool {
-        let mut blocked = [false];
-        query::occluded(self, std::slice::from_ref(ray), &mut blocked, user);
-        blocked[0]
+        query::is_occluded(self, ray, user)
     }
 
     /// [`closest_hit`](Self::closest_hit) for many rays; [`Hit::NONE`] where there is none.

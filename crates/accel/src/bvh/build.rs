@@ -3,12 +3,12 @@
 use aureole_math::Bounds3;
 use rayon::prelude::*;
 
-use super::{binned, reinsert};
 use super::collapse::{Costs, collapse};
 use super::node::Bvh8;
 use super::tree::Item;
-use crate::{Config, Quality};
+use super::{binned, reinsert};
 use crate::big::Big;
+use crate::{Config, Quality};
 
 /// A hierarchy and what its owner must put into its leaves.
 pub(crate) struct Built {
@@ -30,8 +30,14 @@ pub(crate) fn build(
     items.par_iter_mut().zip(0..count as u32).for_each(|(item, i)| *item = Item::new(&bounds(i), i));
     let tree = match config.quality {
         Quality::Fast | Quality::Medium => binned::build(items, lanes),
-        Quality::High => { let e = |n: &str, d: f32| std::env::var(n).ok().and_then(|s| s.parse().ok()).unwrap_or(d);
-            reinsert::optimize(binned::build(items, e("AC_L", 1.0) as usize), e("AC_S", 0.1), e("AC_P", 1.0) as usize) }
+        Quality::High => {
+            let e = |n: &str, d: f32| std::env::var(n).ok().and_then(|s| s.parse().ok()).unwrap_or(d);
+            reinsert::optimize(
+                binned::build(items, e("AC_L", 1.0) as usize),
+                e("AC_S", 0.1),
+                e("AC_P", 1.0) as usize,
+            )
+        }
     };
     collapse(tree, &Costs::new(lanes))
 }

@@ -2,6 +2,7 @@
 
 use arrayvec::ArrayVec;
 use aureole_math::{Ray, gamma};
+use glam::{Vec3, Vec4};
 
 use crate::simd::{Floats, Mask, Simd, splat3};
 
@@ -32,17 +33,20 @@ const ABSOLUTE: f32 = 2.0 * gamma(2);
 impl<S: Simd> TraversalRay<S> {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
+        let [o, d] =
+            [Vec3::from(ray.origin.to_array()), Vec3::from(ray.direction.to_array())].map(|v| v.extend(1.0));
         // A zero component would make 0 · ∞ = NaN of planes through the origin; a huge reciprocal does not.
-        let inv =
-            ray.direction.to_array().map(|d| if d.abs() < 1e-18 { 1e18_f32.copysign(d) } else { 1.0 / d });
-        let o = ray.origin.to_array();
-        let offset = [o[0] * inv[0], o[1] * inv[1], o[2] * inv[2]];
+        let inv = d.abs().max(Vec4::splat(1e-18)).copysign(d).recip();
+        let offset = o * inv;
+        let slack = offset.abs() * ABSOLUTE;
+        let splat = |v: Vec4| v.truncate().to_array();
+        let negative = inv.is_negative_bitmask() as usize;
         Self {
-            near: inv.map(|x| usize::from(x.is_sign_negative())),
-            near_inv: splat3(inv),
-            near_offset: splat3(offset.map(|x| x + x.abs() * ABSOLUTE)),
-            far_inv: splat3(inv.map(|x| x * RELATIVE)),
-            far_offset: splat3(offset.map(|x| (x - x.abs() * ABSOLUTE) * RELATIVE)),
+            near: [negative & 1, (negative >> 1) & 1, (negative >> 2) & 1],
+            near_inv: splat3(splat(inv)),
+            near_offset: splat3(splat(offset + slack)),
+            far_inv: splat3(splat(inv * RELATIVE)),
+            far_offset: splat3(splat((offset - slack) * RELATIVE)),
             t_min: S::F8::splat(ray.t_min),
         }
     }

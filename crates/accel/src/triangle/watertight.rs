@@ -4,9 +4,13 @@
 //! [Woop, Benthin and Wald 2013] "Watertight Ray/Triangle Intersection", JCGT 2(1).
 
 use aureole_math::{Ray, gamma};
+use glam::Vec4;
 
 use super::{Block, BlockHits, LANES, TriangleTest};
 use crate::simd::{Floats, Mask, Simd, load3, splat3};
+
+/// What becomes x, y and z, by the largest axis and whether the ray runs down it: the winding of triangles is kept.
+const AXES: [[[usize; 3]; 2]; 3] = [[[1, 2, 0], [2, 1, 0]], [[2, 0, 1], [0, 2, 1]], [[0, 1, 2], [1, 0, 2]]];
 
 /// A ray whose largest axis becomes z, sheared so that it points along it.
 #[derive(Clone, Copy, Debug)]
@@ -24,16 +28,20 @@ impl TriangleTest for Watertight {
 
     #[inline(always)]
     fn new(ray: &Ray) -> Self {
-        let d = ray.direction;
-        let z = d.abs().max_axis();
-        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
-        // Keep the winding of triangles.
-        if d[z] < 0.0 {
-            std::mem::swap(&mut x, &mut y);
+        // Without branches: the axis of a random ray cannot be predicted.
+        let d = ray.direction.to_array();
+        let [x, y, z] = d.map(f32::abs);
+        let z_is_largest = usize::from(z > x.max(y));
+        let largest = 2 * z_is_largest + (1 - z_is_largest) * usize::from(y > x);
+        let axes = AXES[largest % 3][usize::from(d[largest % 3] < 0.0)];
+        let shear = Vec4::new(d[axes[0]], d[axes[1]], 1.0, 1.0) / d[axes[2]];
+        let origin = ray.origin.to_array();
+        Self {
+            axes,
+            shear: shear.truncate().to_array(),
+            origin: axes.map(|axis| origin[axis]),
+            t_min: ray.t_min,
         }
-        let shear = [d[x] / d[z], d[y] / d[z], 1.0 / d[z]];
-        let o = ray.origin;
-        Self { axes: [x, y, z], shear, origin: [o[x], o[y], o[z]], t_min: ray.t_min }
     }
 
     #[inline(always)]
