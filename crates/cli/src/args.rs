@@ -8,6 +8,8 @@ use aureole::image::{Format, ToneCurve};
 use clap::builder::PossibleValuesParser;
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 
+use crate::command::bench::BenchArgs;
+
 /// Renders scenes by following light.
 ///
 /// Reads pbrt-v4 and Mitsuba 3 scenes, and PLY and OBJ meshes; writes EXR, PNG, JPEG, HDR, PFM and PPM.
@@ -33,6 +35,8 @@ pub(crate) enum Command {
     Diff(DiffArgs),
     /// List, show or render the scenes that come with the program
     Gallery(GalleryArgs),
+    /// Measure how fast rays are
+    Bench(BenchArgs),
 }
 
 /// The scene and what is changed about it.

@@ -28,7 +28,7 @@ fn main() -> ExitCode {
         Command::Render(args) => (args.loudness, args.json),
         Command::Info(args) => (args.loudness, false),
         Command::Gallery(args) => (args.loudness, false),
-        Command::List(_) | Command::Diff(_) => (Loudness::default(), false),
+        Command::List(_) | Command::Diff(_) | Command::Bench(_) => (Loudness::default(), false),
     };
     log::start(loudness, json);
     let painter = if json { Painter::Json } else { Painter::for_terminal() };
@@ -38,6 +38,7 @@ fn main() -> ExitCode {
         Command::List(args) => command::list::run(args),
         Command::Diff(args) => command::diff::run(args),
         Command::Gallery(args) => command::gallery::run(args, &painter),
+        Command::Bench(args) => command::bench::run(args).map(|()| exit::Exit::Done),
     };
     let exit = result.unwrap_or_else(|failure| {
         if let Failure::Plain { message, help, .. } = &failure {

@@ -1,5 +1,6 @@
 //! One file a command.
 
+pub(crate) mod bench;
 mod debug_pixel;
 pub(crate) mod diff;
 pub(crate) mod gallery;

@@ -1,0 +1,260 @@
+//! `aureole bench rays`: millions of rays a second.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use aureole::accel::{Accuracy, Config, Hit, NoUserShapes, Quality, Structure, World};
+use clap::{Args, ValueEnum};
+use serde_json::{Map, Value, json};
+
+use super::clock::{Chunks, Outcome, median, pass};
+use super::ray_file::{CHUNK, KINDS, RaySet, read_mesh, read_rays};
+use crate::exit::{Exit, Failure};
+use crate::output::print;
+
+/// Which rays against which mesh.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct RaysArgs {
+    /// The mesh file (TRIMESH1)
+    #[arg(long, value_name = "FILE")]
+    pub mesh: PathBuf,
+    /// The ray file (RAYSETS1)
+    #[arg(long, value_name = "FILE")]
+    pub rays: PathBuf,
+    /// Time with this many threads; may be given several times
+    #[arg(long, value_name = "N", default_values_t = [1, 2], value_delimiter = ',')]
+    pub threads: Vec<usize>,
+    /// The structures
+    #[arg(long, value_enum, default_values_t = [Accel::Hierarchy], value_delimiter = ',')]
+    pub accel: Vec<Accel>,
+    /// The triangle tests
+    #[arg(long, value_enum, default_values_t = [Test::Fast, Test::Watertight], value_delimiter = ',')]
+    pub test: Vec<Test>,
+    /// How rays are handed over
+    #[arg(long, value_enum, default_values_t = [Mode::Single, Mode::Stream], value_delimiter = ',')]
+    pub mode: Vec<Mode>,
+    /// How much time the build takes for how good a hierarchy
+    #[arg(long, value_enum, default_value_t = BuildQuality::Medium)]
+    pub quality: BuildQuality,
+    /// Time only the first of every N runs of 4096 rays
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
+    pub every: u32,
+    /// Passes of which the median is taken
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
+    pub samples: u32,
+    /// Write each ray's t (or 1 and 0 where any hit will do) as a float to PREFIX.NAME.f32 instead of timing
+    #[arg(long, value_name = "PREFIX")]
+    pub dump: Option<PathBuf>,
+    /// Print one JSON object a line
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// The structure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Accel {
+    /// Every triangle
+    List,
+    /// A wide hierarchy of boxes
+    Hierarchy,
+}
+
+/// The triangle test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Test {
+    /// The fewest operations
+    Fast,
+    /// No ray slips through along an edge
+    Watertight,
+}
+
+/// How rays are handed over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Mode {
+    /// One by one
+    Single,
+    /// Thousands at once
+    Stream,
+}
+
+/// The quality of the hierarchy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum BuildQuality {
+    /// Along a space-filling curve
+    Fast,
+    /// By the surface-area heuristic
+    Medium,
+    /// Optimised afterwards
+    High,
+}
+
+/// Measures and prints.
+pub(crate) fn run(args: &RaysArgs) -> Result<(), Failure> {
+    let mesh = read_mesh(&args.mesh)?;
+    let sets = read_rays(&args.rays, args.every as usize)?;
+    for &accel in &args.accel {
+        for &test in &args.test {
+            let config = config(accel, test, args.quality);
+            let start = Instant::now();
+            let world = World::build(vec![mesh.clone()], 0, &config)
+                .map_err(|error| Failure::new(Exit::Scene, format!("`{}`: {error}", args.mesh.display())))?;
+            let build_seconds = start.elapsed().as_secs_f64();
+            for &mode in &args.mode {
+                let tracer = Tracer { world: &world, mode };
+                let name = name(accel, test, mode);
+                match &args.dump {
+                    Some(prefix) => dump(&tracer, &sets, prefix, &name)?,
+                    None => report(args, &tracer, &sets, &name, build_seconds)?,
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn config(accel: Accel, test: Test, quality: BuildQuality) -> Config {
+    Config {
+        structure: match accel {
+            Accel::List => Structure::List,
+            Accel::Hierarchy => Structure::Hierarchy,
+        },
+        accuracy: match test {
+            Test::Fast => Accuracy::Fast,
+            Test::Watertight => Accuracy::Watertight,
+        },
+        quality: match quality {
+            BuildQuality::Fast => Quality::Fast,
+            BuildQuality::Medium => Quality::Medium,
+            BuildQuality::High => Quality::High,
+        },
+    }
+}
+
+fn name(accel: Accel, test: Test, mode: Mode) -> String {
+    let of = |value: &dyn Fn() -> Option<clap::builder::PossibleValue>| {
+        value().map_or_else(String::new, |value| value.get_name().to_owned())
+    };
+    let mut name = format!("aureole-{}", of(&|| test.to_possible_value()));
+    if accel != Accel::Hierarchy {
+        let _ = write!(name, "-{}", of(&|| accel.to_possible_value()));
+    }
+    if mode != Mode::Single {
+        let _ = write!(name, "-{}", of(&|| mode.to_possible_value()));
+    }
+    name
+}
+
+/// Asks a world about rays.
+struct Tracer<'a> {
+    world: &'a World,
+    mode: Mode,
+}
+
+impl Tracer<'_> {
+    /// The ray parameter of each hit; infinite where there is none.
+    fn trace(&self, set: &RaySet, chunk: usize, mut result: impl FnMut(f32)) {
+        let rays = &set.rays[chunk * CHUNK..set.rays.len().min((chunk + 1) * CHUNK)];
+        let hit_or_miss = |blocked: bool| if blocked { 1.0 } else { f32::INFINITY };
+        match (self.mode, set.any) {
+            (Mode::Single, false) => {
+                for ray in rays {
+                    result(self.world.closest_hit(ray, &NoUserShapes).map_or(f32::INFINITY, |hit| hit.t));
+                }
+            }
+            (Mode::Single, true) => {
+                rays.iter().for_each(|ray| result(hit_or_miss(self.world.occluded(ray, &NoUserShapes))));
+            }
+            (Mode::Stream, false) => {
+                let mut hits = vec![Hit::NONE; rays.len()];
+                self.world.closest_hits(rays, &mut hits, &NoUserShapes);
+                hits.iter().for_each(|hit| result(hit.t));
+            }
+            (Mode::Stream, true) => {
+                let mut blocked = vec![false; rays.len()];
+                self.world.occluded_many(rays, &mut blocked, &NoUserShapes);
+                blocked.into_iter().for_each(|blocked| result(hit_or_miss(blocked)));
+            }
+        }
+    }
+}
+
+/// A set of rays for a tracer.
+struct Work<'a>(&'a Tracer<'a>, &'a RaySet);
+
+impl Chunks for Work<'_> {
+    fn count(&self) -> usize {
+        self.1.rays.len().div_ceil(CHUNK)
+    }
+
+    fn run(&self, chunk: usize) -> Outcome {
+        let mut outcome = Outcome::default();
+        self.0.trace(self.1, chunk, |t| {
+            if t < f32::INFINITY {
+                outcome.hits += 1;
+                outcome.sum_t += f64::from(t);
+            }
+        });
+        if self.1.any {
+            outcome.sum_t = 0.0;
+        }
+        outcome
+    }
+}
+
+fn report(
+    args: &RaysArgs,
+    tracer: &Tracer<'_>,
+    sets: &[RaySet],
+    name: &str,
+    build_seconds: f64,
+) -> Result<(), Failure> {
+    let bytes = tracer.world.stats().bytes;
+    let mesh = args.mesh.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    let mut line = Map::new();
+    line.insert("lib".into(), json!(name));
+    line.insert("mesh".into(), json!(mesh));
+    line.insert("build_s".into(), json!(build_seconds));
+    line.insert("mib".into(), json!(bytes as f64 / f64::from(1 << 20)));
+    let mut busy = 1.0_f64;
+    let mut text =
+        format!("{name}: built in {build_seconds:.3} s, {:.1} MiB\n", bytes as f64 / f64::from(1 << 20));
+    for set in sets.iter().filter(|set| !set.rays.is_empty()) {
+        let work = Work(tracer, set);
+        let warm = pass(&work, 1, 1);
+        let mut entry = json!({
+            "rays": set.rays.len(), "hits": warm.outcome.hits, "sum_t": warm.outcome.sum_t,
+        });
+        for &threads in &args.threads {
+            let (seconds, share) = median(&work, threads.max(1), &warm, args.samples as usize);
+            busy = busy.min(share);
+            let rate = set.rays.len() as f64 / 1e6 / seconds;
+            entry[format!("t{threads}")] = json!(rate);
+            let _ = writeln!(
+                text,
+                "  {:8} {threads:3} threads {rate:9.2} million rays a second",
+                KINDS[set.kind]
+            );
+        }
+        line.insert(KINDS[set.kind].into(), entry);
+    }
+    line.insert("busy".into(), json!(busy));
+    print(&if args.json { format!("{}\n", Value::Object(line)) } else { text })
+}
+
+/// Writes the result of each ray.
+fn dump(tracer: &Tracer<'_>, sets: &[RaySet], prefix: &Path, name: &str) -> Result<(), Failure> {
+    let mut bytes = Vec::new();
+    for set in sets {
+        for chunk in 0..set.rays.len().div_ceil(CHUNK) {
+            tracer.trace(set, chunk, |t| {
+                let value = if set.any && t == f32::INFINITY { 0.0 } else { t };
+                bytes.extend_from_slice(&value.to_le_bytes());
+            });
+        }
+    }
+    let mut path = prefix.as_os_str().to_owned();
+    path.push(format!(".{name}.f32"));
+    let path = PathBuf::from(path);
+    std::fs::write(&path, bytes).map_err(|error| Failure::write(&path, &error))
+}
