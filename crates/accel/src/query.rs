@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 
 use aureole_math::Ray;
 
-use crate::bvh::{Bvh8, Leaf, VisitLeaf};
+use crate::bvh::{Bvh8, Leaf, PACKET, Packet, VisitLeaf, VisitPacket};
 use crate::simd::{self, Kernel, Simd, lanes};
 use crate::triangle::{Fast, TriangleTest, Watertight};
 use crate::world::Object;
@@ -73,9 +73,36 @@ impl<U: UserShapes, T: TriangleTest> Kernel for Closest<'_, U, T> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let Self(world, rays, hits, user, _) = self;
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = closest::<S, T, U>(world, ray, user);
+        for (rays, hits) in rays.chunks(PACKET).zip(hits.chunks_mut(PACKET)) {
+            let packet = <&[Ray; PACKET]>::try_from(rays).ok().filter(|_| world.structure == Structure::Hierarchy);
+            match packet.and_then(|rays| Some((rays, Packet::<S>::new(rays)?))) {
+                Some((rays, packet)) => closest_of_packet::<S, T, U>(world, rays, &packet, hits, user),
+                None => {
+                    for (ray, hit) in rays.iter().zip(hits) {
+                        *hit = closest::<S, T, U>(world, ray, user);
+                    }
+                }
+            }
         }
+    }
+}
+
+/// The nearest hits of rays of about one direction.
+#[inline(always)]
+fn closest_of_packet<S: Simd, T: TriangleTest, U: UserShapes>(
+    world: &World,
+    rays: &[Ray; PACKET],
+    packet: &Packet<S>,
+    hits: &mut [Hit],
+    user: &U,
+) {
+    let searches = rays.each_ref().map(|ray| NearestTriangle::new(world, user, ray, T::new(ray)));
+    let mut ends = rays.each_ref().map(|ray| ray.t_max);
+    let together = T::together(&rays.each_ref().map(T::new));
+    let mut among = NearestTriangles { world, searches, together };
+    world.triangles.walk_packet(packet, &mut ends, &mut among);
+    for ((ray, search), hit) in rays.iter().zip(&among.searches).zip(hits) {
+        *hit = closest_after_triangles::<S, U>(world, ray, search.best(), user);
     }
 }
 
@@ -96,13 +123,16 @@ impl<U: UserShapes, T: TriangleTest> Kernel for Occluded<'_, U, T> {
 fn closest<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, user: &U) -> Hit {
     let mut best = Hit { t: ray.t_max, ..Hit::NONE };
     if !world.blocks.is_empty() {
-        let nearest = Candidate { t: ray.t_max, u: 0.0, v: 0.0, id: 0 };
-        let mut among = NearestTriangle { world, user, ray, test: T::new(ray), nearest };
+        let mut among = NearestTriangle::new(world, user, ray, T::new(ray));
         walk::<S>(world, &world.triangles, world.blocks.len(), ray, ray.t_max, &mut among);
-        if among.nearest.t < ray.t_max {
-            best = among.nearest.hit(world);
-        }
+        best = among.best();
     }
+    closest_after_triangles::<S, U>(world, ray, best, user)
+}
+
+/// Goes on among everything else.
+#[inline(always)]
+fn closest_after_triangles<S: Simd, U: UserShapes>(world: &World, ray: &Ray, mut best: Hit, user: &U) -> Hit {
     if !world.objects.is_empty() {
         let mut among = NearestObject { world, user, ray, best };
         walk::<S>(world, &world.objects_bvh, world.objects.len(), ray, best.t, &mut among);
@@ -174,6 +204,66 @@ struct NearestTriangle<'a, U, T> {
     nearest: Candidate,
 }
 
+impl<'a, U: UserShapes, T: TriangleTest> NearestTriangle<'a, U, T> {
+    #[inline(always)]
+    fn new(world: &'a World, user: &'a U, ray: &'a Ray, test: T) -> Self {
+        Self { world, user, ray, test, nearest: Candidate { t: ray.t_max, u: 0.0, v: 0.0, id: 0 } }
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, found: Candidate) {
+        let is_accepted =
+            || !U::HAS_FILTER || self.user.accept(self.world.tag, &found.hit(self.world), self.ray);
+        if found.beats(&self.nearest) && is_accepted() {
+            self.nearest = found;
+        }
+    }
+
+    /// The hit, or none at the ray's end.
+    #[inline(always)]
+    fn best(&self) -> Hit {
+        if self.nearest.t < self.ray.t_max {
+            self.nearest.hit(self.world)
+        } else {
+            Hit { t: self.ray.t_max, ..Hit::NONE }
+        }
+    }
+}
+
+/// Rays of a packet below which each is tested by itself.
+const FEW_RAYS: u32 = 3;
+
+/// The search for the nearest triangles of the rays of a packet.
+struct NearestTriangles<'a, U, T: TriangleTest> {
+    world: &'a World,
+    searches: [NearestTriangle<'a, U, T>; PACKET],
+    together: Option<T::Rays>,
+}
+
+impl<U: UserShapes, T: TriangleTest> VisitPacket for NearestTriangles<'_, U, T> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, first: usize, count: usize, active: u32, ends: &mut [f32; PACKET]) {
+        let Some(rays) = self.together.as_ref().filter(|_| active.count_ones() >= FEW_RAYS) else {
+            for i in lanes(active) {
+                let search = &mut self.searches[i % PACKET];
+                search.visit::<S>(first, count);
+                ends[i % PACKET] = search.nearest.t;
+            }
+            return;
+        };
+        for block in &self.world.blocks[first..first + count] {
+            for (lane, &id) in block.ids.iter().enumerate().take_while(|(_, id)| **id != u32::MAX) {
+                let hits = T::intersect_rays::<S>(rays, block, lane, ends);
+                for i in lanes(hits.mask & active) {
+                    let search = &mut self.searches[i % PACKET];
+                    search.offer(Candidate { t: hits.t[i % PACKET], u: hits.u[i % PACKET], v: hits.v[i % PACKET], id });
+                    ends[i % PACKET] = search.nearest.t;
+                }
+            }
+        }
+    }
+}
+
 impl<U: UserShapes, T: TriangleTest> VisitLeaf for NearestTriangle<'_, U, T> {
     const ANY: bool = false;
 
@@ -182,12 +272,7 @@ impl<U: UserShapes, T: TriangleTest> VisitLeaf for NearestTriangle<'_, U, T> {
         for block in &self.world.blocks[first..first + count] {
             let hits = self.test.intersect::<S>(block, self.nearest.t);
             for i in lanes(hits.mask) {
-                let found = Candidate { t: hits.t[i], u: hits.u[i], v: hits.v[i], id: block.ids[i] };
-                let is_accepted =
-                    || !U::HAS_FILTER || self.user.accept(self.world.tag, &found.hit(self.world), self.ray);
-                if found.beats(&self.nearest) && is_accepted() {
-                    self.nearest = found;
-                }
+                self.offer(Candidate { t: hits.t[i], u: hits.u[i], v: hits.v[i], id: block.ids[i] });
             }
         }
         Leaf::Continue(self.nearest.t)

@@ -10,7 +10,8 @@ use aureole_math::Ray;
 use bytemuck::{Pod, Zeroable};
 
 use crate::Accuracy;
-use crate::simd::Simd;
+use crate::bvh::PACKET;
+use crate::simd::{Floats, Simd, load3, splat3};
 
 /// Triangles in a block.
 pub(crate) const LANES: usize = 8;
@@ -48,27 +49,50 @@ impl Block {
     }
 }
 
-/// A bit for each triangle of a block that was hit, and where.
+/// A bit for each of some tests that found a hit, and where.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BlockHits {
+pub(crate) struct Hits<const N: usize> {
     pub mask: u32,
-    pub t: [f32; LANES],
-    pub u: [f32; LANES],
-    pub v: [f32; LANES],
+    pub t: [f32; N],
+    pub u: [f32; N],
+    pub v: [f32; N],
 }
 
-impl BlockHits {
-    pub(crate) const NONE: Self = Self { mask: 0, t: [0.0; LANES], u: [0.0; LANES], v: [0.0; LANES] };
+impl<const N: usize> Hits<N> {
+    pub(crate) const NONE: Self = Self { mask: 0, t: [0.0; N], u: [0.0; N], v: [0.0; N] };
 }
 
-/// A way to intersect rays with triangles.
+/// A way to intersect rays with triangles: a ray made ready for it. One ray against the triangles of a block and one triangle
+/// against the rays of a packet are the same arithmetic, so they find the same hits.
 pub(crate) trait TriangleTest: Copy {
+    /// The rays of a packet.
+    type Rays;
+
     /// What a block keeps of a triangle.
     fn prepare(vertices: [[f32; 3]; 3]) -> [[f32; 3]; 3];
 
-    /// A ray made ready for the test.
     fn new(ray: &Ray) -> Self;
 
-    /// The hits with the triangles of a block in `(t_min, t_max]`.
-    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> BlockHits;
+    /// The rays of a packet, if they can be tested together.
+    fn together(rays: &[Self; PACKET]) -> Option<Self::Rays>;
+
+    /// The hits of the ray with the triangles of a block in `(t_min, t_max]`.
+    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<LANES>;
+
+    /// The hits of rays, up to their ends, with one triangle of a block.
+    fn intersect_rays<S: Simd>(rays: &Self::Rays, block: &Block, lane: usize, ends: &[f32; PACKET]) -> Hits<PACKET>;
+}
+
+/// What a block keeps of all its triangles.
+#[inline(always)]
+fn corners<F: Floats<LANES>>(block: &Block) -> [[F; 3]; 3] {
+    [load3(&block.corners[0]), load3(&block.corners[1]), load3(&block.corners[2])]
+}
+
+/// What a block keeps of one triangle, for each ray of a packet.
+#[inline(always)]
+fn one_triangle<F: Floats<PACKET>>(block: &Block, lane: usize) -> [[F; 3]; 3] {
+    let [a, b, c] = &block.corners;
+    let corner = |p: &[[f32; LANES]; 3]| [p[0][lane], p[1][lane], p[2][lane]];
+    [splat3(corner(a)), splat3(corner(b)), splat3(corner(c))]
 }

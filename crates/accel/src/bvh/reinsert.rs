@@ -163,9 +163,9 @@ impl Linked {
                 }
             }
         }
-        for i in 0..nodes.len() {
-            if let Below::Nodes(_, right) = nodes[i].below() {
-                nodes[i] = BinaryNode::inner(nodes[i].bounds, i + 1, right);
+        for (i, node) in nodes.iter_mut().enumerate() {
+            if let Below::Nodes(_, right) = node.below() {
+                *node = BinaryNode::inner(node.bounds, i + 1, right);
             }
         }
         BinaryTree { nodes: Big::from(nodes), order: Big::from(order) }

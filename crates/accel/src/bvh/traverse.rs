@@ -10,7 +10,7 @@ use super::node::{Bvh8, COUNT_BITS, LEAF, MAX_LEVELS, Node, WIDTH};
 
 /// Children left for later, at most seven a level: where the ray enters the child in the upper half (the bits of a number
 /// that is not negative, which sort like the number) and its reference in the lower.
-type Stack = ArrayVec<u64, { (WIDTH - 1) * MAX_LEVELS + WIDTH }>;
+pub(super) type Stack = ArrayVec<u64, { (WIDTH - 1) * MAX_LEVELS + WIDTH }>;
 
 /// A ray made ready for the box test: a plane at `p` is met at `p · inv - offset`, the near planes a little too early and
 /// the far ones a little too late, so that rounding loses nothing.
@@ -26,9 +26,9 @@ pub(crate) struct TraversalRay<S: Simd> {
 }
 
 /// The rounding of `p · inv - offset` relative to its result, of both planes together.
-const RELATIVE: f32 = 1.0 + 4.0 * gamma(2);
+pub(super) const RELATIVE: f32 = 1.0 + 4.0 * gamma(2);
 /// The rounding of `o · inv` relative to it.
-const ABSOLUTE: f32 = 2.0 * gamma(2);
+pub(super) const ABSOLUTE: f32 = 2.0 * gamma(2);
 
 impl<S: Simd> TraversalRay<S> {
     #[inline(always)]
@@ -68,7 +68,7 @@ impl<S: Simd> TraversalRay<S> {
 
 /// How far behind the best hit boxes are still opened: where a ray enters a box and where it meets a triangle in it are
 /// rounded differently, and of equally near hits the one with the smallest number must be found.
-const TIE_SCALE: f32 = 1.0 + 1e-5;
+pub(super) const TIE_SCALE: f32 = 1.0 + 1e-5;
 
 /// What a leaf says after it was tested.
 pub(crate) enum Leaf {

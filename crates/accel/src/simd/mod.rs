@@ -54,6 +54,17 @@ pub(crate) fn splat3<const N: usize, F: Floats<N>>(x: [f32; 3]) -> [F; 3] {
     [F::splat(x[0]), F::splat(x[1]), F::splat(x[2])]
 }
 
+/// Numbers of many things, side by side.
+#[inline(always)]
+pub(crate) fn transposed<T, const N: usize>(things: &[T; N], numbers: impl Fn(&T) -> [f32; 3]) -> [[f32; N]; 3] {
+    let mut out = [[0.0; N]; 3];
+    for (i, thing) in things.iter().enumerate() {
+        let [x, y, z] = numbers(thing);
+        (out[0][i], out[1][i], out[2][i]) = (x, y, z);
+    }
+    out
+}
+
 /// Three registers from memory.
 #[inline(always)]
 pub(crate) fn load3<const N: usize, F: Floats<N>>(x: &[[f32; N]; 3]) -> [F; 3] {

@@ -5,8 +5,9 @@
 
 use aureole_math::Ray;
 
-use super::{Block, BlockHits, LANES, TriangleTest};
-use crate::simd::{Floats, Mask, Simd, load3, splat3};
+use super::{Block, Hits, LANES, TriangleTest, corners, one_triangle};
+use crate::bvh::PACKET;
+use crate::simd::{Floats, Mask, Simd, load3, splat3, transposed};
 
 /// A ray as it is.
 #[derive(Clone, Copy, Debug)]
@@ -16,7 +17,16 @@ pub(crate) struct Fast {
     t_min: f32,
 }
 
+/// Origins, directions and beginnings of rays.
+pub(crate) struct FastRays {
+    origin: [[f32; PACKET]; 3],
+    direction: [[f32; PACKET]; 3],
+    t_min: [f32; PACKET],
+}
+
 impl TriangleTest for Fast {
+    type Rays = FastRays;
+
     /// The first vertex and the edges from it to the others.
     fn prepare([a, b, c]: [[f32; 3]; 3]) -> [[f32; 3]; 3] {
         let from_a = |p: [f32; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
@@ -29,31 +39,50 @@ impl TriangleTest for Fast {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> BlockHits {
-        let [a, e1, e2]: [[S::F8; 3]; 3] =
-            [load3(&block.corners[0]), load3(&block.corners[1]), load3(&block.corners[2])];
-        let (o, d): ([S::F8; 3], [S::F8; 3]) = (splat3(self.origin), splat3(self.direction));
-        let from_a = [o[0] - a[0], o[1] - a[1], o[2] - a[2]];
-        let (p, q) = (cross(d, e2), cross(from_a, e1));
-        // A vanishing determinant makes all of them infinite or NaN, which are in no range.
-        let inv = S::F8::splat(1.0) / dot(p, e1);
-        let (u, v, t) = (dot(p, from_a) * inv, dot(q, d) * inv, dot(q, e2) * inv);
-        let inside = S::F8::splat(0.0).less_or_equal(u.min(v)) & (u + v).less_or_equal(S::F8::splat(1.0));
-        let in_range = S::F8::splat(self.t_min).less(t) & t.less_or_equal(S::F8::splat(t_max));
-        let mask = (inside & in_range).bits();
-        if mask == 0 {
-            return BlockHits::NONE;
-        }
-        BlockHits { mask, t: t.to_array(), u: u.to_array(), v: v.to_array() }
+    fn together(rays: &[Self; PACKET]) -> Option<FastRays> {
+        Some(FastRays {
+            origin: transposed(rays, |ray| ray.origin),
+            direction: transposed(rays, |ray| ray.direction),
+            t_min: rays.each_ref().map(|ray| ray.t_min),
+        })
+    }
+
+    #[inline(always)]
+    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<LANES> {
+        let t_min = S::F8::splat(self.t_min);
+        intersect(corners(block), splat3(self.origin), splat3(self.direction), t_min, S::F8::splat(t_max))
+    }
+
+    #[inline(always)]
+    fn intersect_rays<S: Simd>(rays: &FastRays, block: &Block, lane: usize, ends: &[f32; PACKET]) -> Hits<PACKET> {
+        let (origin, direction) = (load3(&rays.origin), load3(&rays.direction));
+        let t_min = S::F16::load(&rays.t_min);
+        intersect(one_triangle(block, lane), origin, direction, t_min, S::F16::load(ends))
     }
 }
 
 #[inline(always)]
-fn dot<F: Floats<LANES>>(a: [F; 3], b: [F; 3]) -> F {
+fn intersect<const N: usize, F: Floats<N>>([a, e1, e2]: [[F; 3]; 3], o: [F; 3], d: [F; 3], t_min: F, t_max: F) -> Hits<N> {
+    let from_a = [o[0] - a[0], o[1] - a[1], o[2] - a[2]];
+    let (p, q) = (cross(d, e2), cross(from_a, e1));
+    // A vanishing determinant makes all of them infinite or NaN, which are in no range.
+    let inv = F::splat(1.0) / dot(p, e1);
+    let (u, v, t) = (dot(p, from_a) * inv, dot(q, d) * inv, dot(q, e2) * inv);
+    let inside = F::splat(0.0).less_or_equal(u.min(v)) & (u + v).less_or_equal(F::splat(1.0));
+    let in_range = t_min.less(t) & t.less_or_equal(t_max);
+    let mask = (inside & in_range).bits();
+    if mask == 0 {
+        return Hits::NONE;
+    }
+    Hits { mask, t: t.to_array(), u: u.to_array(), v: v.to_array() }
+}
+
+#[inline(always)]
+fn dot<const N: usize, F: Floats<N>>(a: [F; 3], b: [F; 3]) -> F {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]
-fn cross<F: Floats<LANES>>(a: [F; 3], b: [F; 3]) -> [F; 3] {
+fn cross<const N: usize, F: Floats<N>>(a: [F; 3], b: [F; 3]) -> [F; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

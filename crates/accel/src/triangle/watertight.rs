@@ -6,8 +6,9 @@
 use aureole_math::{Ray, gamma};
 use glam::Vec4;
 
-use super::{Block, BlockHits, LANES, TriangleTest};
-use crate::simd::{Floats, Mask, Simd, load3, splat3};
+use super::{Block, Hits, LANES, TriangleTest, corners, one_triangle};
+use crate::bvh::PACKET;
+use crate::simd::{Floats, Mask, Simd, load3, splat3, transposed};
 
 /// What becomes x, y and z, by the largest axis and whether the ray runs down it: the winding of triangles is kept.
 const AXES: [[[usize; 3]; 2]; 3] = [[[1, 2, 0], [2, 1, 0]], [[2, 0, 1], [0, 2, 1]], [[0, 1, 2], [1, 0, 2]]];
@@ -21,7 +22,17 @@ pub(crate) struct Watertight {
     t_min: f32,
 }
 
+/// Rays with the same axes.
+pub(crate) struct WatertightRays {
+    axes: [usize; 3],
+    shear: [[f32; PACKET]; 3],
+    origin: [[f32; PACKET]; 3],
+    t_min: [f32; PACKET],
+}
+
 impl TriangleTest for Watertight {
+    type Rays = WatertightRays;
+
     fn prepare(vertices: [[f32; 3]; 3]) -> [[f32; 3]; 3] {
         vertices
     }
@@ -45,67 +56,92 @@ impl TriangleTest for Watertight {
     }
 
     #[inline(always)]
-    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> BlockHits {
-        let shear = splat3::<LANES, S::F8>(self.shear);
-        let origin = splat3::<LANES, S::F8>(self.origin);
-        // Vertices relative to the origin, sheared.
-        let [x0, y0, z0] = self.relative(&block.corners[0], shear, origin);
-        let [x1, y1, z1] = self.relative(&block.corners[1], shear, origin);
-        let [x2, y2, z2] = self.relative(&block.corners[2], shear, origin);
-        // Twice the signed areas between the ray and each edge; outside where their signs differ.
-        let (u, v, w) = (x2 * y1 - y2 * x1, x0 * y2 - y0 * x2, x1 * y0 - y1 * x0);
-        let zero = S::F8::splat(0.0);
-        let mut inside = same_signs(u, v, w);
-        if inside == 0 {
-            return BlockHits::NONE;
-        }
-        let mut edges = [u, v, w];
-        if u.abs().min(v.abs()).min(w.abs()).less_or_equal(zero).bits() & inside != 0 {
-            let exact = exact_edges(
-                [x0.to_array(), x1.to_array(), x2.to_array()],
-                [y0.to_array(), y1.to_array(), y2.to_array()],
-                [u.to_array(), v.to_array(), w.to_array()],
-            );
-            edges = load3(&exact);
-            inside &= same_signs(edges[0], edges[1], edges[2]);
-        }
-        let [u, v, w] = edges;
-        let det = u + v + w;
-        let inv = S::F8::splat(1.0) / det;
-        let z = [shear[2] * z0, shear[2] * z1, shear[2] * z2];
-        let t = (u * z[0] + v * z[1] + w * z[2]) * inv;
-        // A vanishing determinant makes t infinite or NaN, which is in no range.
-        let in_range = S::F8::splat(self.t_min).less(t) & t.less_or_equal(S::F8::splat(t_max));
-        inside &= in_range.bits();
-        if inside == 0 {
-            return BlockHits::NONE;
-        }
-        let bound = error_bound(edges, [x0, x1, x2], [y0, y1, y2], z, inv);
-        inside &= bound.less(t).bits();
-        BlockHits { mask: inside, t: t.to_array(), u: (v * inv).to_array(), v: (w * inv).to_array() }
+    fn together(rays: &[Self; PACKET]) -> Option<WatertightRays> {
+        let axes = rays[0].axes;
+        rays.iter().all(|ray| ray.axes == axes).then(|| WatertightRays {
+            axes,
+            shear: transposed(rays, |ray| ray.shear),
+            origin: transposed(rays, |ray| ray.origin),
+            t_min: rays.each_ref().map(|ray| ray.t_min),
+        })
+    }
+
+    #[inline(always)]
+    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<LANES> {
+        let corners = permuted(corners(block), self.axes);
+        let t_min = S::F8::splat(self.t_min);
+        intersect(corners, splat3(self.origin), splat3(self.shear), t_min, S::F8::splat(t_max))
+    }
+
+    #[inline(always)]
+    fn intersect_rays<S: Simd>(
+        rays: &WatertightRays,
+        block: &Block,
+        lane: usize,
+        ends: &[f32; PACKET],
+    ) -> Hits<PACKET> {
+        let corners = permuted(one_triangle(block, lane), rays.axes);
+        let t_min = S::F16::load(&rays.t_min);
+        intersect(corners, load3(&rays.origin), load3(&rays.shear), t_min, S::F16::load(ends))
     }
 }
 
-impl Watertight {
-    /// Corners relative to the ray's origin, sheared (z not yet scaled).
-    #[inline(always)]
-    fn relative<F: Floats<LANES>>(
-        &self,
-        corner: &[[f32; LANES]; 3],
-        shear: [F; 3],
-        origin: [F; 3],
-    ) -> [F; 3] {
-        let [kx, ky, kz] = self.axes;
-        let z = F::load(&corner[kz]) - origin[2];
-        let x = (F::load(&corner[kx]) - origin[0]) - shear[0] * z;
-        let y = (F::load(&corner[ky]) - origin[1]) - shear[1] * z;
-        [x, y, z]
+#[inline(always)]
+fn permuted<F: Copy>(corners: [[F; 3]; 3], [x, y, z]: [usize; 3]) -> [[F; 3]; 3] {
+    let [a, b, c] = corners;
+    [[a[x], a[y], a[z]], [b[x], b[y], b[z]], [c[x], c[y], c[z]]]
+}
+
+#[inline(always)]
+fn intersect<const N: usize, F: Floats<N>>(
+    [a, b, c]: [[F; 3]; 3],
+    origin: [F; 3],
+    shear: [F; 3],
+    t_min: F,
+    t_max: F,
+) -> Hits<N> {
+    let ([x0, y0, z0], [x1, y1, z1], [x2, y2, z2]) =
+        (relative(a, origin, shear), relative(b, origin, shear), relative(c, origin, shear));
+    // Twice the signed areas between the ray and each edge; outside where their signs differ.
+    let (u, v, w) = (x2 * y1 - y2 * x1, x0 * y2 - y0 * x2, x1 * y0 - y1 * x0);
+    let mut inside = same_signs(u, v, w);
+    if inside == 0 {
+        return Hits::NONE;
     }
+    let mut edges = [u, v, w];
+    if u.abs().min(v.abs()).min(w.abs()).less_or_equal(F::splat(0.0)).bits() & inside != 0 {
+        let exact = exact_edges(
+            [x0.to_array(), x1.to_array(), x2.to_array()],
+            [y0.to_array(), y1.to_array(), y2.to_array()],
+            [u.to_array(), v.to_array(), w.to_array()],
+        );
+        edges = load3(&exact);
+        inside &= same_signs(edges[0], edges[1], edges[2]);
+    }
+    let [u, v, w] = edges;
+    let inv = F::splat(1.0) / (u + v + w);
+    let z = [shear[2] * z0, shear[2] * z1, shear[2] * z2];
+    let t = (u * z[0] + v * z[1] + w * z[2]) * inv;
+    // A vanishing determinant makes t infinite or NaN, which is in no range.
+    inside &= (t_min.less(t) & t.less_or_equal(t_max)).bits();
+    if inside == 0 {
+        return Hits::NONE;
+    }
+    let bound = error_bound(edges, [x0, x1, x2], [y0, y1, y2], z, inv);
+    inside &= bound.less(t).bits();
+    Hits { mask: inside, t: t.to_array(), u: (v * inv).to_array(), v: (w * inv).to_array() }
+}
+
+/// A corner relative to the ray's origin, sheared (z not yet scaled).
+#[inline(always)]
+fn relative<const N: usize, F: Floats<N>>(corner: [F; 3], origin: [F; 3], shear: [F; 3]) -> [F; 3] {
+    let z = corner[2] - origin[2];
+    [(corner[0] - origin[0]) - shear[0] * z, (corner[1] - origin[1]) - shear[1] * z, z]
 }
 
 /// A bit for each lane in which three numbers have one sign, zero counting as either.
 #[inline(always)]
-fn same_signs<F: Floats<LANES>>(u: F, v: F, w: F) -> u32 {
+fn same_signs<const N: usize, F: Floats<N>>(u: F, v: F, w: F) -> u32 {
     let zero = F::splat(0.0);
     let (least, largest) = (u.min(v).min(w), u.max(v).max(w));
     zero.less_or_equal(least).bits() | largest.less_or_equal(zero).bits()
@@ -114,12 +150,12 @@ fn same_signs<F: Floats<LANES>>(u: F, v: F, w: F) -> u32 {
 /// Where a ray is on an edge to within rounding, the edge functions in double precision, in which they are exact in sign.
 #[cold]
 #[inline(never)]
-fn exact_edges(
-    x: [[f32; LANES]; 3],
-    y: [[f32; LANES]; 3],
-    mut edges: [[f32; LANES]; 3],
-) -> [[f32; LANES]; 3] {
-    for i in 0..LANES {
+fn exact_edges<const N: usize>(
+    x: [[f32; N]; 3],
+    y: [[f32; N]; 3],
+    mut edges: [[f32; N]; 3],
+) -> [[f32; N]; 3] {
+    for i in 0..N {
         if edges.iter().all(|e| e[i] != 0.0) {
             continue;
         }
@@ -140,7 +176,7 @@ fn exact_edges(
 /// # References
 /// [PBRT4] section 6.8.7, for sheared vertices and edge functions.
 #[inline(always)]
-fn error_bound<F: Floats<LANES>>(edges: [F; 3], x: [F; 3], y: [F; 3], z: [F; 3], inv_det: F) -> F {
+fn error_bound<const N: usize, F: Floats<N>>(edges: [F; 3], x: [F; 3], y: [F; 3], z: [F; 3], inv_det: F) -> F {
     let (x, y, z, e) = (largest(x), largest(y), largest(z), largest(edges));
     let [g2, g3, g5] = [F::splat(gamma(2)), F::splat(gamma(3)), F::splat(gamma(5))];
     let (dz, dx, dy) = (g3 * z, g5 * (x + z), g5 * (y + z));
@@ -149,6 +185,6 @@ fn error_bound<F: Floats<LANES>>(edges: [F; 3], x: [F; 3], y: [F; 3], z: [F; 3],
 }
 
 #[inline(always)]
-fn largest<F: Floats<LANES>>(values: [F; 3]) -> F {
+fn largest<const N: usize, F: Floats<N>>(values: [F; 3]) -> F {
     values[0].abs().max(values[1].abs()).max(values[2].abs())
 }
