@@ -8,7 +8,7 @@ use aureole_math::Ray;
 
 use crate::bvh::{Bvh8, Leaf, PACKET, Packet, VisitLeaf, VisitPacket};
 use crate::simd::{self, Kernel, Simd, lanes};
-use crate::triangle::{Fast, TriangleTest, Watertight};
+use crate::triangle::{Block, Fast, TriangleTest, Watertight};
 use crate::world::Object;
 use crate::{Accuracy, Hit, NO_INSTANCE, Structure, UserShapes, World};
 
@@ -96,13 +96,21 @@ fn closest_of_packet<S: Simd, T: TriangleTest, U: UserShapes>(
     hits: &mut [Hit],
     user: &U,
 ) {
-    let searches = rays.each_ref().map(|ray| NearestTriangle::new(world, user, ray, T::new(ray)));
-    let mut ends = rays.each_ref().map(|ray| ray.t_max);
-    let together = T::together(&rays.each_ref().map(T::new));
-    let mut among = NearestTriangles { world, searches, together };
+    // No arrays' `map` here: it would not be compiled for the instruction set.
+    let mut tests = [T::new(&rays[0]); PACKET];
+    let mut nearest = [Candidate { t: 0.0, u: 0.0, v: 0.0, id: 0 }; PACKET];
+    let mut ends = [0.0; PACKET];
+    for (i, ray) in rays.iter().enumerate() {
+        tests[i] = T::new(ray);
+        nearest[i].t = ray.t_max;
+        ends[i] = ray.t_max;
+    }
+    let together = T::together(&tests);
+    let mut among = NearestTriangles { world, user, rays, tests, together, nearest };
     world.triangles.walk_packet(packet, &mut ends, &mut among);
-    for ((ray, search), hit) in rays.iter().zip(&among.searches).zip(hits) {
-        *hit = closest_after_triangles::<S, U>(world, ray, search.best(), user);
+    for (i, hit) in hits.iter_mut().enumerate() {
+        let best = among.search(i).best();
+        *hit = closest_after_triangles::<S, U>(world, &rays[i], best, user);
     }
 }
 
@@ -211,6 +219,14 @@ impl<'a, U: UserShapes, T: TriangleTest> NearestTriangle<'a, U, T> {
     }
 
     #[inline(always)]
+    fn test_block<S: Simd>(&mut self, block: &Block) {
+        let hits = self.test.intersect::<S>(block, self.nearest.t);
+        for i in lanes(hits.mask) {
+            self.offer(Candidate { t: hits.t[i], u: hits.u[i], v: hits.v[i], id: block.ids[i] });
+        }
+    }
+
+    #[inline(always)]
     fn offer(&mut self, found: Candidate) {
         let is_accepted =
             || !U::HAS_FILTER || self.user.accept(self.world.tag, &found.hit(self.world), self.ray);
@@ -230,34 +246,53 @@ impl<'a, U: UserShapes, T: TriangleTest> NearestTriangle<'a, U, T> {
     }
 }
 
-/// Rays of a packet below which each is tested by itself.
-const FEW_RAYS: u32 = 3;
-
 /// The search for the nearest triangles of the rays of a packet.
 struct NearestTriangles<'a, U, T: TriangleTest> {
     world: &'a World,
-    searches: [NearestTriangle<'a, U, T>; PACKET],
+    user: &'a U,
+    rays: &'a [Ray; PACKET],
+    tests: [T; PACKET],
     together: Option<T::Rays>,
+    nearest: [Candidate; PACKET],
+}
+
+impl<'a, U: UserShapes, T: TriangleTest> NearestTriangles<'a, U, T> {
+    /// The search of one of the rays.
+    #[inline(always)]
+    fn search(&self, i: usize) -> NearestTriangle<'a, U, T> {
+        let (world, user, ray, test, nearest) =
+            (self.world, self.user, &self.rays[i], self.tests[i], self.nearest[i]);
+        NearestTriangle { world, user, ray, test, nearest }
+    }
 }
 
 impl<U: UserShapes, T: TriangleTest> VisitPacket for NearestTriangles<'_, U, T> {
     #[inline(always)]
     fn visit<S: Simd>(&mut self, first: usize, count: usize, active: u32, ends: &mut [f32; PACKET]) {
-        let Some(rays) = self.together.as_ref().filter(|_| active.count_ones() >= FEW_RAYS) else {
-            for i in lanes(active) {
-                let search = &mut self.searches[i % PACKET];
-                search.visit::<S>(first, count);
-                ends[i % PACKET] = search.nearest.t;
-            }
-            return;
-        };
         for block in &self.world.blocks[first..first + count] {
-            for (lane, &id) in block.ids.iter().enumerate().take_while(|(_, id)| **id != u32::MAX) {
-                let hits = T::intersect_rays::<S>(rays, block, lane, ends);
-                for i in lanes(hits.mask & active) {
-                    let search = &mut self.searches[i % PACKET];
-                    search.offer(Candidate { t: hits.t[i % PACKET], u: hits.u[i % PACKET], v: hits.v[i % PACKET], id });
-                    ends[i % PACKET] = search.nearest.t;
+            let triangles = block.ids.iter().take_while(|id| **id != u32::MAX).count();
+            match &self.together {
+                // One triangle against all rays, or one ray against all triangles: whatever are fewer.
+                Some(rays) if active.count_ones() as usize > triangles => {
+                    for (lane, &id) in block.ids[..triangles].iter().enumerate() {
+                        let hits = T::intersect_rays::<S>(rays, block, lane, ends);
+                        for i in lanes(hits.mask & active) {
+                            let i = i % PACKET;
+                            let mut search = self.search(i);
+                            search.offer(Candidate { t: hits.t[i], u: hits.u[i], v: hits.v[i], id });
+                            self.nearest[i] = search.nearest;
+                            ends[i] = search.nearest.t;
+                        }
+                    }
+                }
+                _ => {
+                    for i in lanes(active) {
+                        let i = i % PACKET;
+                        let mut search = self.search(i);
+                        search.test_block::<S>(block);
+                        self.nearest[i] = search.nearest;
+                        ends[i] = search.nearest.t;
+                    }
                 }
             }
         }
@@ -270,10 +305,7 @@ impl<U: UserShapes, T: TriangleTest> VisitLeaf for NearestTriangle<'_, U, T> {
     #[inline(always)]
     fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf {
         for block in &self.world.blocks[first..first + count] {
-            let hits = self.test.intersect::<S>(block, self.nearest.t);
-            for i in lanes(hits.mask) {
-                self.offer(Candidate { t: hits.t[i], u: hits.u[i], v: hits.v[i], id: block.ids[i] });
-            }
+            self.test_block::<S>(block);
         }
         Leaf::Continue(self.nearest.t)
     }

@@ -11,7 +11,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::Accuracy;
 use crate::bvh::PACKET;
-use crate::simd::{Floats, Simd, load3, splat3};
+use crate::simd::{Floats, Simd, splat3};
 
 /// Triangles in a block.
 pub(crate) const LANES: usize = 8;
@@ -83,16 +83,24 @@ pub(crate) trait TriangleTest: Copy {
     fn intersect_rays<S: Simd>(rays: &Self::Rays, block: &Block, lane: usize, ends: &[f32; PACKET]) -> Hits<PACKET>;
 }
 
-/// What a block keeps of all its triangles.
+/// What a block keeps of all its triangles, the axes in this order.
 #[inline(always)]
-fn corners<F: Floats<LANES>>(block: &Block) -> [[F; 3]; 3] {
-    [load3(&block.corners[0]), load3(&block.corners[1]), load3(&block.corners[2])]
+fn corners<F: Floats<LANES>>(block: &Block, [x, y, z]: [usize; 3]) -> [[F; 3]; 3] {
+    let [a, b, c] = &block.corners;
+    [
+        [F::load(&a[x]), F::load(&a[y]), F::load(&a[z])],
+        [F::load(&b[x]), F::load(&b[y]), F::load(&b[z])],
+        [F::load(&c[x]), F::load(&c[y]), F::load(&c[z])],
+    ]
 }
 
-/// What a block keeps of one triangle, for each ray of a packet.
+/// The same of one triangle, for each ray of a packet.
 #[inline(always)]
-fn one_triangle<F: Floats<PACKET>>(block: &Block, lane: usize) -> [[F; 3]; 3] {
+fn one_triangle<F: Floats<PACKET>>(block: &Block, lane: usize, [x, y, z]: [usize; 3]) -> [[F; 3]; 3] {
     let [a, b, c] = &block.corners;
-    let corner = |p: &[[f32; LANES]; 3]| [p[0][lane], p[1][lane], p[2][lane]];
-    [splat3(corner(a)), splat3(corner(b)), splat3(corner(c))]
+    [
+        splat3([a[x][lane], a[y][lane], a[z][lane]]),
+        splat3([b[x][lane], b[y][lane], b[z][lane]]),
+        splat3([c[x][lane], c[y][lane], c[z][lane]]),
+    ]
 }

@@ -48,52 +48,37 @@ impl<S: Simd> Packet<S> {
         let first = vector(rays[0].direction.to_array());
         let signs = first.is_negative_bitmask();
         let (mut low, mut high) = (first, first);
+        let (mut low_o, mut high_o) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
         let mut same_signs = true;
         for ray in rays {
-            let d = vector(ray.direction.to_array());
+            let (o, d) = (vector(ray.origin.to_array()), vector(ray.direction.to_array()));
             same_signs &= d.is_negative_bitmask() == signs;
             (low, high) = (low.min(d), high.max(d));
+            (low_o, high_o) = (low_o.min(o), high_o.max(o));
         }
         let size = (high - low).max_element();
         if !(same_signs && size <= SPREAD * low.truncate().abs().max(high.truncate().abs()).max_element()) {
             return None;
         }
-        Some(Self::bounded(rays, signs))
-    }
-
-    #[inline(always)]
-    fn bounded(rays: &[Ray; PACKET], signs: u32) -> Self {
-        let mut packet_rays = [[[0.0; PACKET]; 4]; 3];
+        let near = [signs as usize & 1, (signs as usize >> 1) & 1, (signs as usize >> 2) & 1];
+        let (low_o, high_o) = (low_o.to_array(), high_o.to_array());
+        let pick = |axis: usize, far: usize| if near[axis] ^ far == 0 { high_o[axis] } else { low_o[axis] };
         let mut t_mins = [0.0; PACKET];
-        let (mut low_o, mut high_o) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
-        let (mut low_inv, mut high_inv) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
-        for (i, ray) in rays.iter().enumerate() {
-            let [o, d] = [ray.origin.to_array(), ray.direction.to_array()].map(|v| Vec3::from(v).extend(1.0));
-            let inv = d.abs().max(Vec4::splat(1e-18)).copysign(d).recip();
-            let offset = o * inv;
-            let slack = offset.abs() * ABSOLUTE;
-            let numbers = [inv, offset + slack, inv * RELATIVE, (offset - slack) * RELATIVE];
-            for axis in 0..3 {
-                for (of_packet, of_ray) in packet_rays[axis].iter_mut().zip(numbers) {
-                    of_packet[i] = of_ray.as_ref()[axis];
-                }
-            }
-            t_mins[i] = ray.t_min;
-            (low_o, high_o) = (low_o.min(o), high_o.max(o));
-            (low_inv, high_inv) = (low_inv.min(inv), high_inv.max(inv));
+        let mut t_min = f32::INFINITY;
+        for (own, ray) in t_mins.iter_mut().zip(rays) {
+            *own = ray.t_min;
+            t_min = t_min.min(ray.t_min);
         }
-        let near = [0, 1, 2].map(|axis| (signs >> axis) as usize & 1);
-        let pick = |axis: usize, far: usize| [high_o, low_o][near[axis] ^ far].as_ref()[axis];
-        Self {
+        Some(Self {
             near,
             near_origin: splat3([pick(0, 0), pick(1, 0), pick(2, 0)]),
             far_origin: splat3([pick(0, 1), pick(1, 1), pick(2, 1)]),
-            low_inv: splat3(low_inv.truncate().to_array()),
-            high_inv: splat3(high_inv.truncate().to_array()),
-            t_min: S::F8::splat(t_mins.iter().copied().fold(f32::INFINITY, f32::min)),
-            rays: packet_rays,
+            low_inv: splat3(reciprocal(high).truncate().to_array()),
+            high_inv: splat3(reciprocal(low).truncate().to_array()),
+            t_min: S::F8::splat(t_min),
+            rays: each_ray::<S>(rays, near),
             t_mins,
-        }
+        })
     }
 
     /// Where the first ray may enter each of eight boxes, and a bit for each that some ray may meet before `t_max`.
@@ -125,6 +110,40 @@ impl<S: Simd> Packet<S> {
         }
         enter.less_or_equal(leave).bits()
     }
+}
+
+/// The reciprocal of a direction, as in `TraversalRay`.
+#[inline(always)]
+fn reciprocal(d: Vec4) -> Vec4 {
+    d.abs().max(Vec4::splat(1e-18)).copysign(d).recip()
+}
+
+/// For each axis the factors and offsets of the near and the far planes, as in `TraversalRay`.
+#[inline(always)]
+fn each_ray<S: Simd>(rays: &[Ray; PACKET], near: [usize; 3]) -> [[[f32; PACKET]; 4]; 3] {
+    let mut origin = [[0.0; PACKET]; 3];
+    let mut direction = [[0.0; PACKET]; 3];
+    for (i, ray) in rays.iter().enumerate() {
+        let (o, d) = (ray.origin, ray.direction);
+        (origin[0][i], origin[1][i], origin[2][i]) = (o.x, o.y, o.z);
+        (direction[0][i], direction[1][i], direction[2][i]) = (d.x, d.y, d.z);
+    }
+    let mut out = [[[0.0; PACKET]; 4]; 3];
+    for axis in 0..3 {
+        // All directions have one sign on this axis.
+        let sign = S::F16::splat(if near[axis] == 0 { 1.0 } else { -1.0 });
+        let inv = sign / S::F16::load(&direction[axis]).abs().max(S::F16::splat(1e-18));
+        let offset = S::F16::load(&origin[axis]) * inv;
+        let slack = offset.abs() * S::F16::splat(ABSOLUTE);
+        let relative = S::F16::splat(RELATIVE);
+        out[axis] = [
+            inv.to_array(),
+            (offset + slack).to_array(),
+            (inv * relative).to_array(),
+            ((offset - slack) * relative).to_array(),
+        ];
+    }
+    out
 }
 
 impl Bvh8 {

@@ -7,7 +7,7 @@ use aureole_math::Ray;
 
 use super::{Block, Hits, LANES, TriangleTest, corners, one_triangle};
 use crate::bvh::PACKET;
-use crate::simd::{Floats, Mask, Simd, load3, splat3, transposed};
+use crate::simd::{Floats, Mask, Simd, load3, numbers, splat3, transposed};
 
 /// A ray as it is.
 #[derive(Clone, Copy, Debug)]
@@ -43,21 +43,21 @@ impl TriangleTest for Fast {
         Some(FastRays {
             origin: transposed(rays, |ray| ray.origin),
             direction: transposed(rays, |ray| ray.direction),
-            t_min: rays.each_ref().map(|ray| ray.t_min),
+            t_min: numbers(rays, |ray| ray.t_min),
         })
     }
 
     #[inline(always)]
     fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<LANES> {
         let t_min = S::F8::splat(self.t_min);
-        intersect(corners(block), splat3(self.origin), splat3(self.direction), t_min, S::F8::splat(t_max))
+        intersect(corners(block, [0, 1, 2]), splat3(self.origin), splat3(self.direction), t_min, S::F8::splat(t_max))
     }
 
     #[inline(always)]
     fn intersect_rays<S: Simd>(rays: &FastRays, block: &Block, lane: usize, ends: &[f32; PACKET]) -> Hits<PACKET> {
         let (origin, direction) = (load3(&rays.origin), load3(&rays.direction));
         let t_min = S::F16::load(&rays.t_min);
-        intersect(one_triangle(block, lane), origin, direction, t_min, S::F16::load(ends))
+        intersect(one_triangle(block, lane, [0, 1, 2]), origin, direction, t_min, S::F16::load(ends))
     }
 }
 

@@ -8,7 +8,7 @@ use glam::Vec4;
 
 use super::{Block, Hits, LANES, TriangleTest, corners, one_triangle};
 use crate::bvh::PACKET;
-use crate::simd::{Floats, Mask, Simd, load3, splat3, transposed};
+use crate::simd::{Floats, Mask, Simd, load3, numbers, splat3, transposed};
 
 /// What becomes x, y and z, by the largest axis and whether the ray runs down it: the winding of triangles is kept.
 const AXES: [[[usize; 3]; 2]; 3] = [[[1, 2, 0], [2, 1, 0]], [[2, 0, 1], [0, 2, 1]], [[0, 1, 2], [1, 0, 2]]];
@@ -62,13 +62,13 @@ impl TriangleTest for Watertight {
             axes,
             shear: transposed(rays, |ray| ray.shear),
             origin: transposed(rays, |ray| ray.origin),
-            t_min: rays.each_ref().map(|ray| ray.t_min),
+            t_min: numbers(rays, |ray| ray.t_min),
         })
     }
 
     #[inline(always)]
     fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<LANES> {
-        let corners = permuted(corners(block), self.axes);
+        let corners = corners(block, self.axes);
         let t_min = S::F8::splat(self.t_min);
         intersect(corners, splat3(self.origin), splat3(self.shear), t_min, S::F8::splat(t_max))
     }
@@ -80,16 +80,10 @@ impl TriangleTest for Watertight {
         lane: usize,
         ends: &[f32; PACKET],
     ) -> Hits<PACKET> {
-        let corners = permuted(one_triangle(block, lane), rays.axes);
+        let corners = one_triangle(block, lane, rays.axes);
         let t_min = S::F16::load(&rays.t_min);
         intersect(corners, load3(&rays.origin), load3(&rays.shear), t_min, S::F16::load(ends))
     }
-}
-
-#[inline(always)]
-fn permuted<F: Copy>(corners: [[F; 3]; 3], [x, y, z]: [usize; 3]) -> [[F; 3]; 3] {
-    let [a, b, c] = corners;
-    [[a[x], a[y], a[z]], [b[x], b[y], b[z]], [c[x], c[y], c[z]]]
 }
 
 #[inline(always)]
