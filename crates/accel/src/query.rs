@@ -74,7 +74,8 @@ impl<U: UserShapes, T: TriangleTest> Kernel for Closest<'_, U, T> {
     fn run<S: Simd>(self) {
         let Self(world, rays, hits, user, _) = self;
         for (rays, hits) in rays.chunks(PACKET).zip(hits.chunks_mut(PACKET)) {
-            let packet = <&[Ray; PACKET]>::try_from(rays).ok().filter(|_| world.structure == Structure::Hierarchy);
+            let packet =
+                <&[Ray; PACKET]>::try_from(rays).ok().filter(|_| world.structure == Structure::Hierarchy);
             match packet.and_then(|rays| Some((rays, Packet::<S>::new(rays)?))) {
                 Some((rays, packet)) => closest_of_packet::<S, T, U>(world, rays, &packet, hits, user),
                 None => {
@@ -267,6 +268,11 @@ impl<'a, U: UserShapes, T: TriangleTest> NearestTriangles<'a, U, T> {
 }
 
 impl<U: UserShapes, T: TriangleTest> VisitPacket for NearestTriangles<'_, U, T> {
+    #[inline(always)]
+    fn expect<S: Simd>(&self, first: usize) {
+        S::prefetch(&self.world.blocks[first]);
+    }
+
     #[inline(always)]
     fn visit<S: Simd>(&mut self, first: usize, count: usize, active: u32, ends: &mut [f32; PACKET]) {
         for block in &self.world.blocks[first..first + count] {

@@ -80,7 +80,12 @@ pub(crate) trait TriangleTest: Copy {
     fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<LANES>;
 
     /// The hits of rays, up to their ends, with one triangle of a block.
-    fn intersect_rays<S: Simd>(rays: &Self::Rays, block: &Block, lane: usize, ends: &[f32; PACKET]) -> Hits<PACKET>;
+    fn intersect_rays<S: Simd>(
+        rays: &Self::Rays,
+        block: &Block,
+        lane: usize,
+        ends: &[f32; PACKET],
+    ) -> Hits<PACKET>;
 }
 
 /// What a block keeps of all its triangles, the axes in this order.

@@ -9,7 +9,7 @@ use glam::{Vec3, Vec4};
 
 use super::node::{Bvh8, COUNT_BITS, LEAF, Node, WIDTH};
 use super::traverse::{ABSOLUTE, RELATIVE, Stack, TIE_SCALE};
-use crate::simd::{Floats, Mask, Simd, splat3};
+use crate::simd::{Floats, Mask, Simd, lanes, splat3};
 
 /// Rays in a packet.
 pub(crate) const PACKET: usize = 16;
@@ -19,6 +19,9 @@ pub(crate) trait VisitPacket {
     /// Tests the packed things from `first` on against the rays whose bits are set in `active`. Lowers the ends of rays that
     /// hit something, to below zero where nothing nearer is wanted.
     fn visit<S: Simd>(&mut self, first: usize, count: usize, active: u32, ends: &mut [f32; PACKET]);
+
+    /// The leaf whose things begin at `first` may be visited soon.
+    fn expect<S: Simd>(&self, first: usize);
 }
 
 /// What all rays of a packet have in common, and what each box is tested with: see `TraversalRay`.
@@ -165,6 +168,14 @@ impl Bvh8 {
             let node = &self.nodes[current as usize];
             let (enter, mask) = packet.intersect_node(node, t_max);
             push_children(current, enter.to_array(), mask, &mut stack);
+            for slot in lanes(mask) {
+                let child = node.children[slot % WIDTH];
+                if child & LEAF == 0 {
+                    S::prefetch(&self.nodes[child as usize]);
+                } else {
+                    visitor.expect::<S>(((child & !LEAF) >> COUNT_BITS) as usize);
+                }
+            }
             current = loop {
                 let Some(entry) = stack.pop() else { return };
                 // Also stops when no ray wants more: then the latest end is below zero.

@@ -19,6 +19,10 @@ pub(crate) trait Simd: Copy {
     type F8: Floats<8>;
     /// Sixteen numbers.
     type F16: Floats<16>;
+
+    /// Asks for memory that will be read soon.
+    #[inline(always)]
+    fn prefetch<T>(_soon: &T) {}
 }
 
 /// Numbers side by side.
@@ -66,7 +70,10 @@ pub(crate) fn numbers<T, const N: usize>(things: &[T; N], number: impl Fn(&T) ->
 
 /// Three numbers of each of many things, side by side.
 #[inline(always)]
-pub(crate) fn transposed<T, const N: usize>(things: &[T; N], numbers: impl Fn(&T) -> [f32; 3]) -> [[f32; N]; 3] {
+pub(crate) fn transposed<T, const N: usize>(
+    things: &[T; N],
+    numbers: impl Fn(&T) -> [f32; 3],
+) -> [[f32; N]; 3] {
     let mut out = [[0.0; N]; 3];
     for (i, thing) in things.iter().enumerate() {
         let [x, y, z] = numbers(thing);

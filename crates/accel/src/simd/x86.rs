@@ -82,12 +82,31 @@ impl Simd for Avx2 {
     type F4 = F4;
     type F8 = F8;
     type F16 = Pair;
+
+    #[inline(always)]
+    fn prefetch<T>(soon: &T) {
+        prefetch(soon);
+    }
 }
 
 impl Simd for Avx512 {
     type F4 = F4;
     type F8 = F8;
     type F16 = F16;
+
+    #[inline(always)]
+    fn prefetch<T>(soon: &T) {
+        prefetch(soon);
+    }
+}
+
+#[inline(always)]
+fn prefetch<T>(soon: &T) {
+    let start = std::ptr::from_ref(soon).cast::<i8>();
+    for line in (0..size_of::<T>()).step_by(64) {
+        // SAFETY: a prefetch reads nothing; the address is within the thing anyway.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line)) };
+    }
 }
 
 /// Registers are only made and used by code that runs inside `run_avx2` or `run_avx512`: that is what makes each of the

@@ -50,11 +50,22 @@ impl TriangleTest for Fast {
     #[inline(always)]
     fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<LANES> {
         let t_min = S::F8::splat(self.t_min);
-        intersect(corners(block, [0, 1, 2]), splat3(self.origin), splat3(self.direction), t_min, S::F8::splat(t_max))
+        intersect(
+            corners(block, [0, 1, 2]),
+            splat3(self.origin),
+            splat3(self.direction),
+            t_min,
+            S::F8::splat(t_max),
+        )
     }
 
     #[inline(always)]
-    fn intersect_rays<S: Simd>(rays: &FastRays, block: &Block, lane: usize, ends: &[f32; PACKET]) -> Hits<PACKET> {
+    fn intersect_rays<S: Simd>(
+        rays: &FastRays,
+        block: &Block,
+        lane: usize,
+        ends: &[f32; PACKET],
+    ) -> Hits<PACKET> {
         let (origin, direction) = (load3(&rays.origin), load3(&rays.direction));
         let t_min = S::F16::load(&rays.t_min);
         intersect(one_triangle(block, lane, [0, 1, 2]), origin, direction, t_min, S::F16::load(ends))
@@ -62,7 +73,13 @@ impl TriangleTest for Fast {
 }
 
 #[inline(always)]
-fn intersect<const N: usize, F: Floats<N>>([a, e1, e2]: [[F; 3]; 3], o: [F; 3], d: [F; 3], t_min: F, t_max: F) -> Hits<N> {
+fn intersect<const N: usize, F: Floats<N>>(
+    [a, e1, e2]: [[F; 3]; 3],
+    o: [F; 3],
+    d: [F; 3],
+    t_min: F,
+    t_max: F,
+) -> Hits<N> {
     let from_a = [o[0] - a[0], o[1] - a[1], o[2] - a[2]];
     let (p, q) = (cross(d, e2), cross(from_a, e1));
     // A vanishing determinant makes all of them infinite or NaN, which are in no range.

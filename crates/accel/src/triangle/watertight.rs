@@ -170,7 +170,13 @@ fn exact_edges<const N: usize>(
 /// # References
 /// [PBRT4] section 6.8.7, for sheared vertices and edge functions.
 #[inline(always)]
-fn error_bound<const N: usize, F: Floats<N>>(edges: [F; 3], x: [F; 3], y: [F; 3], z: [F; 3], inv_det: F) -> F {
+fn error_bound<const N: usize, F: Floats<N>>(
+    edges: [F; 3],
+    x: [F; 3],
+    y: [F; 3],
+    z: [F; 3],
+    inv_det: F,
+) -> F {
     let (x, y, z, e) = (largest(x), largest(y), largest(z), largest(edges));
     let [g2, g3, g5] = [F::splat(gamma(2)), F::splat(gamma(3)), F::splat(gamma(5))];
     let (dz, dx, dy) = (g3 * z, g5 * (x + z), g5 * (y + z));

@@ -30,8 +30,7 @@ pub(super) struct RaySet {
 pub(super) fn read_mesh(path: &Path) -> Result<Geometry, Failure> {
     let file = File::read(path, b"TRIMESH1")?;
     let (vertices, triangles) = (file.u32(8)? as usize, file.u32(12)? as usize);
-    let positions =
-        file.bytes(16, vertices, 12)?.chunks_exact(12).map(floats).collect::<Arc<[[f32; 3]]>>();
+    let positions = file.bytes(16, vertices, 12)?.chunks_exact(12).map(floats).collect::<Arc<[[f32; 3]]>>();
     let numbers = file.bytes(16 + 12 * vertices, triangles, 12)?.chunks_exact(12);
     let indices = numbers.map(|t| floats(t).map(f32::to_bits)).collect();
     Ok(Geometry::Triangles { positions, indices })
