@@ -7,6 +7,7 @@ mod envmap;
 mod point;
 mod projector;
 mod spot;
+mod sunsky;
 
 use std::fmt::Debug;
 
@@ -22,6 +23,7 @@ pub use envmap::EnvironmentMap;
 pub use point::PointLight;
 pub use projector::Projector;
 pub use spot::Spot;
+pub use sunsky::SunSky;
 
 /// What lights may ask for.
 #[derive(Clone, Copy, Debug)]
@@ -96,6 +98,7 @@ registry! {
     constant::ConstantEnvironment as Constant = "constant",
     envmap::EnvironmentMap as EnvironmentMap = "envmap",
     projector::Projector as Projector = "projector",
+    sunsky::SunSky as SunSky = "sunsky",
 }
 
 impl Light {

@@ -64,6 +64,16 @@ fn examples(world: &mut World) -> Vec<Example> {
         ("projector", "projector", {
             params([("irradiance", slide), ("world_from_light", turned()), ("fov", Float(60.0))])
         }),
+        // A sun that is large and dim enough for tests that look around.
+        ("sun and sky", "sunsky", {
+            params([
+                ("sun_direction", Value::Vec3([0.5, 0.8, 0.6])),
+                ("sun_aperture", Float(40.0)),
+                ("turbidity", Float(4.5)),
+                ("world_from_light", rotation()),
+            ])
+        }),
+        ("sky without a sun", "sunsky", params([("sun_scale", Float(0.0)), ("hour", Float(9.5))])),
     ];
     let mut examples: Vec<Example> = free
         .into_iter()
@@ -170,7 +180,7 @@ fn skies_are_drawn_by_their_density() {
     let examples = examples(&mut world);
     let at = context(&world);
     let skies: Vec<_> = examples.iter().filter(|example| example.light.is_environment()).collect();
-    assert_eq!(skies.len(), 3);
+    assert_eq!(skies.len(), 5);
     let config = Chi2Config { test_count: skies.len(), ..Chi2Config::default() };
     for example in skies {
         let sample = |rng: &mut Pcg32| Some(example.light.sample(&at, Point3::ORIGIN, rng.point2())?.wi);

@@ -18,9 +18,9 @@ const KINDS: &[(&str, &str)] = &[
     ("envmap", "envmap"),
     ("projector", "projector"),
     ("sunsky", "sunsky"),
-    ("timed_sunsky", "timed_sunsky"),
-    ("sky", "sky"),
-    ("sun", "sun"),
+    // Half of it each, as in Mitsuba 0.6.
+    ("sky", "sunsky"),
+    ("sun", "sunsky"),
 ];
 
 /// Adds a light of the scene. Area lights shine only from a shape that refers to them.
@@ -58,7 +58,21 @@ pub(super) fn translate<'a>(
             let scale = scope.float("scale")?.unwrap_or(1.0);
             scope.out.push("scale", Value::Float(scale * std::f64::consts::PI), scope.span());
         }
+        "sunsky" => sun_and_sky(t, &mut scope)?,
         _ => {}
     }
     t.finish(scope, Family::Light, kind)
+}
+
+fn sun_and_sky(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(), SceneError> {
+    match scope.object.plugin.as_str() {
+        "sky" => scope.default("sun_scale", Value::Float(0.0)),
+        "sun" => scope.default("sky_scale", Value::Float(0.0)),
+        _ => {}
+    }
+    let at = scope.values.span("complex_sun");
+    if scope.bool("complex_sun", false)? {
+        t.context.report.warn("the sun's disk is drawn evenly: `complex_sun` has no effect", at);
+    }
+    Ok(())
 }
