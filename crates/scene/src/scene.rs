@@ -234,6 +234,8 @@ impl Scene {
             wavelengths,
             uv: surface.uv,
             p: surface.p,
+            n: surface.frame.n,
+            dp_duv: [surface.dp_du, surface.dp_dv],
             mesh: at.shape.mesh_point(&at.hit),
         };
         let context = MaterialContext {

@@ -43,6 +43,8 @@ impl Scene {
             wavelengths: Wavelengths::RGB,
             uv: surface.uv,
             p: surface.p,
+            n: surface.frame.n,
+            dp_duv: [surface.dp_du, surface.dp_dv],
             mesh: shape.mesh_point(hit),
         };
         let alpha = context.float(*alpha);

@@ -4,10 +4,12 @@
 //! |---|---|---|---|
 //! | `radiance` | texture | 1 | emitted radiance, over the shape's uv |
 //! | `two_sided` | bool | false | shine on the inner side as well |
+//! | `power` | float | 0 | if positive: scale to this power of the whole shape, W |
 //!
 //! It is given to a shape as `emission`.
 
 use std::f32::consts::PI;
+use std::sync::OnceLock;
 
 use aureole_desc::{ParamDoc, Params, SceneError, Span};
 use aureole_math::{Bounds3, Id, Point2, Point3, Vector3, offset_ray_origin};
@@ -17,11 +19,15 @@ use super::{LightContext, LightOps, LightSample};
 use crate::{Element, Resolver, Shape, SurfacePoint, Texture, TextureContext, spectrum_texture};
 
 /// A shining surface.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Area {
     shape: Id<Shape>,
     radiance: Id<Texture>,
     two_sided: bool,
+    /// The power to scale to, if positive.
+    power: f32,
+    /// The factor that does it, once its shape and texture can be asked.
+    scale: OnceLock<f32>,
 }
 
 impl Element for Area {
@@ -34,6 +40,7 @@ impl Element for Area {
             doc: "emitted radiance, over the shape's uv",
         },
         ParamDoc { name: "two_sided", ty: "bool", default: "false", doc: "shine on the inner side as well" },
+        ParamDoc { name: "power", ty: "float", default: "0", doc: "if positive: scale to this power, W" },
     ];
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -41,7 +48,13 @@ impl Element for Area {
             SceneError::invalid("an `area` light belongs to a shape, as its `emission`", Span::NONE)
         })?;
         let radiance = spectrum_texture(params, resolver, "radiance", 1.0, SpectrumRole::Illuminant)?;
-        Ok(Self { shape, radiance, two_sided: params.bool("two_sided", false)? })
+        Ok(Self {
+            shape,
+            radiance,
+            two_sided: params.bool("two_sided", false)?,
+            power: params.float("power", 0.0)?,
+            scale: OnceLock::new(),
+        })
     }
 }
 
@@ -49,10 +62,23 @@ impl Area {
     #[inline]
     fn radiance(&self, at: &LightContext<'_>, uv: Point2, cos: f32) -> Spectrum {
         if cos > 0.0 || self.two_sided {
-            TextureContext::at_uv(at.textures, at.wavelengths, uv).spectrum(self.radiance)
+            let radiance = TextureContext::at_uv(at.textures, at.wavelengths, uv).spectrum(self.radiance);
+            if self.power > 0.0 { radiance * self.scale(at) } else { radiance }
         } else {
             Spectrum::ZERO
         }
+    }
+}
+
+impl Area {
+    fn unscaled_power(&self, at: &LightContext<'_>) -> f32 {
+        let sides = if self.two_sided { 2.0 } else { 1.0 };
+        let mean = at.textures[self.radiance].mean(at.textures);
+        luminance(mean.rgb()) * at.shapes[self.shape].area() * PI * sides
+    }
+
+    fn scale(&self, at: &LightContext<'_>) -> f32 {
+        *self.scale.get_or_init(|| self.power / self.unscaled_power(at).max(f32::MIN_POSITIVE))
     }
 }
 
@@ -89,10 +115,6 @@ impl LightOps for Area {
     }
 
     fn power(&self, at: &LightContext<'_>, _: &Bounds3) -> f32 {
-        let sides = if self.two_sided { 2.0 } else { 1.0 };
-        luminance(at.textures[self.radiance].mean(at.textures).rgb())
-            * at.shapes[self.shape].area()
-            * PI
-            * sides
+        if self.power > 0.0 { self.power } else { self.unscaled_power(at) }
     }
 }

@@ -45,7 +45,7 @@ impl LightOps for ConstantEnvironment {
         warp::UNIFORM_SPHERE_PDF
     }
 
-    fn environment(&self, at: &LightContext<'_>, _: Vector3) -> Spectrum {
+    fn environment(&self, at: &LightContext<'_>, _: Point3, _: Vector3) -> Spectrum {
         self.radiance.eval(&at.wavelengths)
     }
 

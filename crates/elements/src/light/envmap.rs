@@ -5,6 +5,7 @@
 //! | `filename` | path | | EXR, HDR, ... |
 //! | `scale` | float | 1 | factor |
 //! | `tint` | spectrum | 1 | another factor |
+//! | `illuminance` | float | 0 | if positive: `scale` is relative to this irradiance of a plane that faces the light's +Z |
 //! | `mapping` | string | latlong | `latlong` (+Y up, the left border towards −Z) or `equal_area` (pbrt-v4, +Z up) |
 //! | `world_from_light` | transform | identity | |
 
@@ -14,7 +15,7 @@ use std::sync::Arc;
 use aureole_desc::{ParamDoc, Params, SceneError, Span};
 use aureole_image::{Bitmap, Encoding};
 use aureole_math::{Bounds3, PiecewiseConstant2D, Point2, Point3, Transform, Vector3, warp};
-use aureole_spectrum::{PreparedSpectrum, Spectrum, SpectrumRole, luminance};
+use aureole_spectrum::{PreparedSpectrum, Spectrum, SpectrumRole, Wavelengths, luminance};
 
 use super::{LightContext, LightOps, LightSample};
 use crate::{Element, Resolver, SurfacePoint};
@@ -52,6 +53,18 @@ impl Mapping {
         }
     }
 
+    /// The irradiance that a picture gives a plane that faces +Z.
+    fn irradiance(self, picture: &Bitmap) -> f32 {
+        let (w, h) = (picture.width(), picture.height());
+        let texel = |i: usize| {
+            let (x, y) = (i % w, i / w);
+            let uv = Point2::new((x as f32 + 0.5) / w as f32, (y as f32 + 0.5) / h as f32);
+            let cos = self.direction(uv).z.max(0.0);
+            f64::from(cos * self.stretch(uv.y) * luminance(picture.rgb(x, y)))
+        };
+        ((0..w * h).map(texel).sum::<f64>() / (w * h) as f64) as f32
+    }
+
     /// Steradians per unit area of the picture at a height on it.
     fn stretch(self, v: f32) -> f32 {
         match self {
@@ -80,6 +93,12 @@ impl Element for EnvironmentMap {
         ParamDoc { name: "filename", ty: "path", default: "", doc: "EXR, HDR, ..." },
         ParamDoc { name: "scale", ty: "float", default: "1", doc: "factor" },
         ParamDoc { name: "tint", ty: "spectrum", default: "1", doc: "another factor" },
+        ParamDoc {
+            name: "illuminance",
+            ty: "float",
+            default: "0",
+            doc: "if positive: the irradiance of a plane that faces +Z, before `scale`",
+        },
         ParamDoc { name: "mapping", ty: "string", default: "latlong", doc: "`latlong` or `equal_area`" },
         ParamDoc { name: "world_from_light", ty: "transform", default: "identity", doc: "turns the picture" },
     ];
@@ -96,7 +115,11 @@ impl Element for EnvironmentMap {
         let mapping =
             params.one_of("mapping", &[("latlong", Mapping::LatLong), ("equal_area", Mapping::EqualArea)])?;
         let tint = params.spectrum("tint", 1.0)?.to_rgb(SpectrumRole::Illuminant);
-        let scale = params.float_in("scale", 1.0, 0.0, f32::INFINITY)?;
+        let mut scale = params.float_in("scale", 1.0, 0.0, f32::INFINITY)?;
+        let illuminance = params.float("illuminance", 0.0)?;
+        if illuminance > 0.0 {
+            scale *= illuminance / mapping.irradiance(&picture).max(f32::MIN_POSITIVE);
+        }
         let tinted = aureole_spectrum::SpectrumSource::Rgb(tint.map(|c| c * scale));
         Ok(Self::new(
             picture,
@@ -163,6 +186,11 @@ impl EnvironmentMap {
         texel(0, 0).lerp(texel(1, 0), fx).lerp(texel(0, 1).lerp(texel(1, 1), fx), fy)
     }
 
+    /// Radiance along `w` as RGB, for tables of it.
+    pub(super) fn picture_radiance(&self, w: Vector3) -> Spectrum {
+        self.lookup(self.mapping.uv(self.local(w))) * self.scale.eval(&Wavelengths::RGB)
+    }
+
     fn local(&self, w: Vector3) -> Vector3 {
         self.light_from_world.vector(w).normalized()
     }
@@ -188,7 +216,7 @@ impl LightOps for EnvironmentMap {
         }
     }
 
-    fn environment(&self, at: &LightContext<'_>, w: Vector3) -> Spectrum {
+    fn environment(&self, at: &LightContext<'_>, _: Point3, w: Vector3) -> Spectrum {
         self.lookup(self.mapping.uv(self.local(w))) * self.scale.eval(&at.wavelengths)
     }
 

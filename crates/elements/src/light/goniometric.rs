@@ -139,7 +139,8 @@ fn lookup(picture: &Bitmap, uv: Point2) -> f32 {
 }
 
 impl Element for Goniometric {
-    const SUMMARY: &'static str = "Light from one point by a diagram over directions: a picture or measured tables.";
+    const SUMMARY: &'static str =
+        "Light from one point by a diagram over directions: a picture or measured tables.";
     const PARAMS: &'static [ParamDoc] = &[
         ParamDoc { name: "intensity", ty: "spectrum", default: "1", doc: "factor, W/sr" },
         ParamDoc { name: "filename", ty: "path", default: "", doc: "a picture in the equal-area mapping" },
@@ -160,12 +161,13 @@ impl Element for Goniometric {
         let diagram = Diagram::from_params(params, resolver)?;
         let mean = diagram.mean();
         let power = params.float("power", 0.0)?;
-        let is_scaled = power > 0.0 && mean > 0.0;
+        let intensity = params.spectrum("intensity", 1.0)?.prepare(SpectrumRole::Illuminant);
+        let unscaled = luminance(intensity.eval(&Wavelengths::RGB).rgb()) * mean * 4.0 * PI;
         Ok(Self {
             light_from_world: place.inverse(),
             position: place.point(Point3::ORIGIN),
-            intensity: params.spectrum("intensity", 1.0)?.prepare(SpectrumRole::Illuminant),
-            scale: if is_scaled { power / (4.0 * PI * mean) } else { 1.0 },
+            intensity,
+            scale: if power > 0.0 && unscaled > 0.0 { power / unscaled } else { 1.0 },
             diagram,
             mean,
         })

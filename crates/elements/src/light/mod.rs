@@ -4,7 +4,9 @@ mod area;
 mod constant;
 mod directional;
 mod envmap;
+mod goniometric;
 mod point;
+mod portal;
 mod projector;
 mod spot;
 mod sunsky;
@@ -20,7 +22,9 @@ pub use area::Area;
 pub use constant::ConstantEnvironment;
 pub use directional::Directional;
 pub use envmap::EnvironmentMap;
+pub use goniometric::Goniometric;
 pub use point::PointLight;
+pub use portal::PortalEnvironment;
 pub use projector::Projector;
 pub use spot::Spot;
 pub use sunsky::SunSky;
@@ -73,8 +77,8 @@ pub trait LightOps: Debug + Send + Sync {
         Spectrum::ZERO
     }
 
-    /// Radiance that arrives from far away along `w` (pointing away from the viewer).
-    fn environment(&self, _at: &LightContext<'_>, _w: Vector3) -> Spectrum {
+    /// Radiance that arrives at `reference` from far away along `w` (pointing away from the viewer).
+    fn environment(&self, _at: &LightContext<'_>, _reference: Point3, _w: Vector3) -> Spectrum {
         Spectrum::ZERO
     }
 
@@ -99,6 +103,8 @@ registry! {
     envmap::EnvironmentMap as EnvironmentMap = "envmap",
     projector::Projector as Projector = "projector",
     sunsky::SunSky as SunSky = "sunsky",
+    goniometric::Goniometric as Goniometric = "goniometric",
+    portal::PortalEnvironment as PortalEnvironment = "portal_envmap",
 }
 
 impl Light {
@@ -126,10 +132,10 @@ impl Light {
         each_light!(self, l => l.emitted(at, surface, w))
     }
 
-    /// Radiance that arrives from far away along `w`.
+    /// Radiance that arrives at `reference` from far away along `w`.
     #[inline]
-    pub fn environment(&self, at: &LightContext<'_>, w: Vector3) -> Spectrum {
-        each_light!(self, l => l.environment(at, w))
+    pub fn environment(&self, at: &LightContext<'_>, reference: Point3, w: Vector3) -> Spectrum {
+        each_light!(self, l => l.environment(at, reference, w))
     }
 
     /// Whether rays that leave the scene see this light.

@@ -9,7 +9,8 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::Arena;
 use aureole_spectrum::{PreparedSpectrum, Spectrum, SpectrumRole, Wavelengths};
 
-use super::{Texture, TextureContext, TextureOps, UvMap};
+use super::mapping::{MAPPING, Mapping, TEXTURE_FROM_WORLD, TO_UV};
+use super::{Texture, TextureContext, TextureOps};
 use crate::{Element, Resolver};
 
 /// A bilinear blend of four corners.
@@ -17,7 +18,7 @@ use crate::{Element, Resolver};
 pub struct Bilerp {
     /// At (0,0), (0,1), (1,0), (1,1).
     corners: [PreparedSpectrum; 4],
-    uv: UvMap,
+    mapping: Mapping,
 }
 
 impl Element for Bilerp {
@@ -27,7 +28,9 @@ impl Element for Bilerp {
         ParamDoc { name: "v01", ty: "spectrum", default: "1", doc: "value at u = 0, v = 1" },
         ParamDoc { name: "v10", ty: "spectrum", default: "0", doc: "value at u = 1, v = 0" },
         ParamDoc { name: "v11", ty: "spectrum", default: "1", doc: "value at u = 1, v = 1" },
-        ParamDoc { name: "to_uv", ty: "transform", default: "identity", doc: "applied to the surface's uv" },
+        MAPPING,
+        TEXTURE_FROM_WORLD,
+        TO_UV,
     ];
 
     fn from_params(params: &mut Params, _: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -35,13 +38,13 @@ impl Element for Bilerp {
             Ok(params.spectrum(name, default)?.prepare(SpectrumRole::Unbounded))
         };
         let corners = [corner("v00", 0.0)?, corner("v01", 1.0)?, corner("v10", 0.0)?, corner("v11", 1.0)?];
-        Ok(Self { corners, uv: UvMap::new(&params.transform("to_uv")?) })
+        Ok(Self { corners, mapping: Mapping::from_params(params)? })
     }
 }
 
 impl TextureOps for Bilerp {
     fn eval(&self, at: &TextureContext<'_>) -> Spectrum {
-        let p = self.uv.apply(at.uv);
+        let p = self.mapping.apply(at);
         let [c00, c01, c10, c11] = self.corners.each_ref().map(|c| c.eval(&at.wavelengths));
         c00.lerp(c10, p.x).lerp(c01.lerp(c11, p.x), p.y)
     }

@@ -8,7 +8,9 @@
 //! | `encoding` | string | auto | `auto` (by file type), `srgb`, `linear` (raw data), `gamma` |
 //! | `gamma` | float | 2.2 | for `encoding` = `gamma` |
 //! | `channel` | string | color | what numbers are taken from: `color` or `alpha` |
-//! | `to_uv` | transform | identity | applied to the surface's uv |
+//! | `mapping` | string | uv | from the surface (`uv`) or from where it is: `spherical`, `cylindrical`, `planar` |
+//! | `texture_from_world` | transform | identity | into the texture's space, for the latter |
+//! | `to_uv` | transform | identity | applied to the mapped coordinates |
 //! | `scale` | float | 1 | factor |
 //! | `invert` | bool | false | 1 - value, before `scale` |
 //!
@@ -18,24 +20,18 @@ use std::sync::Arc;
 
 use aureole_desc::{ParamDoc, Params, SceneError, Span};
 use aureole_image::{Bitmap, Encoding};
-use aureole_math::{Arena, Point2, Vector2};
+use aureole_math::{Arena, Vector2};
 use aureole_spectrum::{Spectrum, luminance};
 
-use super::{Texture, TextureContext, TextureOps, UvMap};
+use super::mapping::{MAPPING, Mapping, TEXTURE_FROM_WORLD, TO_UV};
+use super::wrap::Wrap;
+use super::{Texture, TextureContext, TextureOps, central_difference};
 use crate::{Element, Resolver};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Filter {
     Bilinear,
     Nearest,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Wrap {
-    Repeat,
-    Mirror,
-    Clamp,
-    Black,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,27 +47,9 @@ pub struct BitmapTexture {
     filter: Filter,
     wrap: Wrap,
     channel: Channel,
-    uv: UvMap,
+    mapping: Mapping,
     scale: f32,
     invert: bool,
-}
-
-impl Wrap {
-    /// The texel that stands at an index; `None` for black.
-    #[inline]
-    fn index(self, i: i64, n: i64) -> Option<usize> {
-        let wrapped = match self {
-            Self::Repeat => i.rem_euclid(n),
-            Self::Clamp => i.clamp(0, n - 1),
-            Self::Mirror => {
-                let j = i.rem_euclid(2 * n);
-                if j < n { j } else { 2 * n - 1 - j }
-            }
-            Self::Black if (0..n).contains(&i) => i,
-            Self::Black => return None,
-        };
-        Some(wrapped as usize)
-    }
 }
 
 impl BitmapTexture {
@@ -89,15 +67,15 @@ impl BitmapTexture {
 
     /// Continuous texel coordinates: texel centres lie at whole numbers plus one half.
     #[inline]
-    fn place(&self, uv: Point2) -> Vector2 {
-        let p = self.uv.apply(uv);
+    fn place(&self, at: &TextureContext<'_>) -> Vector2 {
+        let p = self.mapping.apply(at);
         let clip = |x: f32| if x.is_finite() { x.clamp(-1e9, 1e9) } else { 0.0 };
         Vector2::new(clip(p.x) * self.bitmap.width() as f32, (1.0 - clip(p.y)) * self.bitmap.height() as f32)
     }
 
     #[inline]
-    fn lookup(&self, uv: Point2) -> [f32; 3] {
-        let p = self.place(uv);
+    fn lookup(&self, at: &TextureContext<'_>) -> [f32; 3] {
+        let p = self.place(at);
         let value = match self.filter {
             Filter::Nearest => self.texel(p.x.floor() as i64, p.y.floor() as i64),
             Filter::Bilinear => {
@@ -136,7 +114,9 @@ impl Element for BitmapTexture {
         },
         ParamDoc { name: "gamma", ty: "float", default: "2.2", doc: "for `encoding` = `gamma`" },
         ParamDoc { name: "channel", ty: "string", default: "color", doc: "`color` or `alpha`" },
-        ParamDoc { name: "to_uv", ty: "transform", default: "identity", doc: "applied to the surface's uv" },
+        MAPPING,
+        TEXTURE_FROM_WORLD,
+        TO_UV,
         ParamDoc { name: "scale", ty: "float", default: "1", doc: "factor" },
         ParamDoc { name: "invert", ty: "bool", default: "false", doc: "1 - value, before `scale`" },
     ];
@@ -173,7 +153,7 @@ impl Element for BitmapTexture {
                 ],
             )?,
             channel: params.one_of("channel", &[("color", Channel::Color), ("alpha", Channel::Alpha)])?,
-            uv: UvMap::new(&params.transform("to_uv")?),
+            mapping: Mapping::from_params(params)?,
             scale: params.float("scale", 1.0)?,
             invert: params.bool("invert", false)?,
         })
@@ -183,17 +163,17 @@ impl Element for BitmapTexture {
 impl TextureOps for BitmapTexture {
     #[inline]
     fn eval(&self, at: &TextureContext<'_>) -> Spectrum {
-        Spectrum::from_rgb(self.lookup(at.uv))
+        Spectrum::from_rgb(self.lookup(at))
     }
 
     fn eval_float(&self, at: &TextureContext<'_>) -> f32 {
-        let value = self.lookup(at.uv);
+        let value = self.lookup(at);
         if self.bitmap.channels() < 3 { value[0] } else { luminance(value) }
     }
 
     /// The exact derivative of the bilinear interpolation.
     fn gradient(&self, at: &TextureContext<'_>) -> Vector2 {
-        let p = self.place(at.uv);
+        let p = self.place(at);
         let (x, y) = (p.x - 0.5, p.y - 0.5);
         let (x0, y0) = (x.floor(), y.floor());
         let (fx, fy) = (x - x0, y - y0);
@@ -205,7 +185,8 @@ impl TextureOps for BitmapTexture {
         let sign = if self.invert { -self.scale } else { self.scale };
         let by_x = ((b - a) * (1.0 - fy) + (d - c) * fy) * self.bitmap.width() as f32 * sign;
         let by_y = -((c - a) * (1.0 - fx) + (d - b) * fx) * self.bitmap.height() as f32 * sign;
-        self.uv.pull_back(Vector2::new(by_x, by_y))
+        let pulled = self.mapping.pull_back(Vector2::new(by_x, by_y));
+        pulled.unwrap_or_else(|| central_difference(self, at))
     }
 
     fn mean(&self, _: &Arena<Texture>) -> Spectrum {
@@ -225,19 +206,5 @@ impl TextureOps for BitmapTexture {
 
     fn resolution(&self) -> Option<[u32; 2]> {
         Some([self.bitmap.width() as u32, self.bitmap.height() as u32])
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn wrapping() {
-        let at = |wrap: Wrap| [-1, 0, 3, 4, 7].map(|i| wrap.index(i, 4));
-        assert_eq!(at(Wrap::Repeat), [3, 0, 3, 0, 3].map(Some));
-        assert_eq!(at(Wrap::Mirror), [0, 0, 3, 3, 0].map(Some));
-        assert_eq!(at(Wrap::Clamp), [0, 0, 3, 3, 3].map(Some));
-        assert_eq!(at(Wrap::Black), [None, Some(0), Some(3), None, None]);
     }
 }

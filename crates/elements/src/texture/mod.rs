@@ -4,22 +4,36 @@ mod bilerp;
 mod bitmap;
 mod checkerboard;
 mod constant;
+mod direction_mix;
+mod dots;
+mod fractal;
+mod grid;
+mod mapping;
+mod marble;
 mod mesh_attribute;
 mod mix;
+mod noise;
 mod power;
 mod scale;
 mod uv_map;
+mod wrap;
 
 use std::fmt::Debug;
 
 use aureole_desc::Attribute;
-use aureole_math::{Arena, Id, Point2, Point3, Vector2};
+use aureole_math::{Arena, Id, Point2, Point3, Vector2, Vector3};
 use aureole_spectrum::{Spectrum, Wavelengths};
 
 pub use bilerp::Bilerp;
 pub use bitmap::BitmapTexture;
 pub use checkerboard::Checkerboard;
 pub use constant::Constant;
+pub use direction_mix::DirectionMix;
+pub use dots::Dots;
+pub use fractal::Fractal;
+pub use grid::Grid;
+pub use mapping::Mapping;
+pub use marble::Marble;
 pub use mesh_attribute::MeshAttribute;
 pub use mix::Mix;
 pub use power::Power;
@@ -50,6 +64,10 @@ pub struct TextureContext<'a> {
     pub uv: Point2,
     /// World position.
     pub p: Point3,
+    /// Unit shading normal.
+    pub n: Vector3,
+    /// Derivatives of position by u and v, for the derivatives of textures that depend on position.
+    pub dp_duv: [Vector3; 2],
     /// The place on the mesh, if the surface is one.
     pub mesh: Option<MeshPoint<'a>>,
 }
@@ -57,7 +75,8 @@ pub struct TextureContext<'a> {
 impl<'a> TextureContext<'a> {
     /// A context that knows nothing but uv, for lights and tests.
     pub fn at_uv(textures: &'a Arena<Texture>, wavelengths: Wavelengths, uv: Point2) -> Self {
-        Self { textures, wavelengths, uv, p: Point3::ORIGIN, mesh: None }
+        let (p, n) = (Point3::ORIGIN, Vector3::Z);
+        Self { textures, wavelengths, uv, p, n, dp_duv: [Vector3::ZERO; 2], mesh: None }
     }
 
     /// The value of a texture here.
@@ -91,15 +110,7 @@ pub trait TextureOps: Debug + Send + Sync {
 
     /// The derivative of [`eval_float`](Self::eval_float) by u and v; by central differences unless a texture knows better.
     fn gradient(&self, at: &TextureContext<'_>) -> Vector2 {
-        const STEP: f32 = 1.0 / 4096.0;
-        let value = |du: f32, dv: f32| {
-            let uv = Point2::new(at.uv.x + du, at.uv.y + dv);
-            self.eval_float(&TextureContext { uv, ..*at })
-        };
-        Vector2::new(
-            (value(STEP, 0.0) - value(-STEP, 0.0)) / (2.0 * STEP),
-            (value(0.0, STEP) - value(0.0, -STEP)) / (2.0 * STEP),
-        )
+        central_difference(self, at)
     }
 
     /// An estimate of the mean over the unit square, for choosing among lights and lobes.
@@ -116,6 +127,20 @@ pub trait TextureOps: Debug + Send + Sync {
     }
 }
 
+/// The derivative of a texture's number by u and v, from its values nearby.
+fn central_difference<T: TextureOps + ?Sized>(texture: &T, at: &TextureContext<'_>) -> Vector2 {
+    const STEP: f32 = 1.0 / 4096.0;
+    let value = |du: f32, dv: f32| {
+        let uv = Point2::new(at.uv.x + du, at.uv.y + dv);
+        let p = at.p + at.dp_duv[0] * du + at.dp_duv[1] * dv;
+        texture.eval_float(&TextureContext { uv, p, ..*at })
+    };
+    Vector2::new(
+        (value(STEP, 0.0) - value(-STEP, 0.0)) / (2.0 * STEP),
+        (value(0.0, STEP) - value(0.0, -STEP)) / (2.0 * STEP),
+    )
+}
+
 registry! {
     ($)
     /// Any built-in texture.
@@ -128,6 +153,11 @@ registry! {
     power::Power as Power = "power",
     bilerp::Bilerp as Bilerp = "bilerp",
     mesh_attribute::MeshAttribute as MeshAttribute = "mesh_attribute",
+    direction_mix::DirectionMix as DirectionMix = "direction_mix",
+    dots::Dots as Dots = "dots",
+    fractal::Fractal as Fractal = "fractal",
+    marble::Marble as Marble = "marble",
+    grid::Grid as Grid = "grid",
 }
 
 impl Texture {

@@ -61,8 +61,45 @@ fn examples(world: &mut World) -> Vec<Example> {
         ("square sky", "envmap", {
             params([("filename", picture()), ("mapping", word("equal_area")), ("scale", Float(2.0))])
         }),
+        ("sky behind a window", "portal_envmap", {
+            // Before all points of reference, so that all see something of it.
+            let corners = [-1.5, -1.0, 4.0, -1.5, 2.0, 4.0, 2.5, 2.0, 4.0, 2.5, -1.0, 4.0];
+            params([("filename", picture()), ("portal", Value::Floats(corners.map(|x: f32| x).into()))])
+        }),
+        ("sky of known illuminance", "envmap", {
+            params([("filename", picture()), ("mapping", word("equal_area")), ("illuminance", Float(3.0))])
+        }),
         ("projector", "projector", {
             params([("irradiance", slide), ("world_from_light", turned()), ("fov", Float(60.0))])
+        }),
+        ("goniometric picture", "goniometric", {
+            params([
+                ("filename", picture()),
+                ("world_from_light", turned()),
+                ("intensity", rgb(1.0, 2.0, 0.5)),
+            ])
+        }),
+        ("luminaire", "goniometric", {
+            params([
+                ("vertical", Value::Floats([0.0, 30.0, 60.0, 90.0].into())),
+                ("horizontal", Value::Floats([0.0, 90.0, 180.0].into())),
+                (
+                    "candela",
+                    Value::Floats(
+                        [50.0, 40.0, 10.0, 0.0, 50.0, 60.0, 30.0, 1.0, 50.0, 20.0, 20.0, 0.0].into(),
+                    ),
+                ),
+                ("power", Float(7.0)),
+                ("world_from_light", turned()),
+            ])
+        }),
+        ("projector by intensity", "projector", {
+            params([
+                ("irradiance", glow.clone()),
+                ("measure", word("intensity")),
+                ("fov", Float(70.0)),
+                ("power", Float(3.0)),
+            ])
         }),
         // A sun that is large and dim enough for tests that look around.
         ("sun and sky", "sunsky", {
@@ -103,6 +140,10 @@ fn examples(world: &mut World) -> Vec<Example> {
             examples.push(Example { label, light: world.light("area", params, shape), shape, is_two_sided });
         }
     }
+    let bright = params([("radiance", glow), ("power", Float(5.0))]);
+    let shape = examples.last().and_then(|example| example.shape);
+    let light = world.light("area", bright, shape);
+    examples.push(Example { label: "shining tube of known power", light, shape, is_two_sided: false });
     examples
 }
 
@@ -152,7 +193,9 @@ fn draws_carry_what_their_direction_sees() {
                 // A ray finds the same radiance and the same density.
                 let ray = Ray::new(reference, s.wi);
                 let (radiance, pdf) = match example.shape {
-                    None => (light.environment(&at, s.wi), light.pdf_omega(&at, reference, s.wi, None)),
+                    None => {
+                        (light.environment(&at, reference, s.wi), light.pdf_omega(&at, reference, s.wi, None))
+                    }
                     Some(id) => {
                         let shape = &world.shapes[id];
                         let points = all_hits(shape, ray).into_iter().map(|hit| shape.surface(&ray, &hit));
@@ -180,7 +223,7 @@ fn skies_are_drawn_by_their_density() {
     let examples = examples(&mut world);
     let at = context(&world);
     let skies: Vec<_> = examples.iter().filter(|example| example.light.is_environment()).collect();
-    assert_eq!(skies.len(), 5);
+    assert_eq!(skies.len(), 7);
     let config = Chi2Config { test_count: skies.len(), ..Chi2Config::default() };
     for example in skies {
         let sample = |rng: &mut Pcg32| Some(example.light.sample(&at, Point3::ORIGIN, rng.point2())?.wi);
@@ -214,7 +257,7 @@ fn drawing_and_looking_agree() {
                 let wi = warp::square_to_uniform_sphere(rng.point2());
                 let ray = Ray::new(reference, wi);
                 let radiance = match example.shape {
-                    None => light.environment(&at, wi),
+                    None => light.environment(&at, reference, wi),
                     Some(id) => {
                         let Some(hit) = crate::shape::closest_hit(&world.shapes[id], &ray) else {
                             return 0.0;
@@ -255,7 +298,7 @@ fn power_is_the_flux() {
             // Radiance from everywhere onto a disk of the scene's radius.
             let mean = mean_with_error(100_000, 4, |rng| {
                 let w = warp::square_to_uniform_sphere(rng.point2());
-                f64::from(luminance(light.environment(&at, w).rgb()))
+                f64::from(luminance(light.environment(&at, Point3::ORIGIN, w).rgb()))
             });
             mean.value * 4.0 * f64::from(PI) * f64::from(PI) * f64::from(scene.radius()).powi(2)
         } else if example.label == "directional" {

@@ -22,6 +22,8 @@ fn bsdf_at(world: &World, material: Id<Material>, frame: Frame, wo: Vector3) -> 
         wavelengths: Wavelengths::RGB,
         uv: Point2::new(0.4, 0.6),
         p: Point3::ORIGIN,
+        n: frame.n,
+        dp_duv: [frame.s, frame.t],
         mesh: None,
     };
     let at = MaterialContext {

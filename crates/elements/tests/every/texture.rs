@@ -2,7 +2,7 @@
 
 use aureole_desc::{Family, Value};
 use aureole_elements::texture::{Texture, TextureContext};
-use aureole_math::{Id, Pcg32, Point2, Transform, Vector3};
+use aureole_math::{Id, Pcg32, Point2, Point3, Transform, Vector3};
 use aureole_spectrum::Wavelengths;
 use aureole_testkit::{derivative, mean_with_error};
 
@@ -12,6 +12,9 @@ fn examples(world: &mut World) -> Vec<(&'static str, Id<Texture>)> {
     let texture = Family::Texture;
     let picture = || ("filename", Value::Path("wood.png".into()));
     let twice = || ("to_uv", Value::Transform(Transform::scale(Vector3::new(2.0, 3.0, 1.0))));
+    let thrice = || ("to_uv", Value::Transform(Transform::scale(Vector3::new(6.0, 6.0, 1.0))));
+    let thrice_in_space =
+        || ("texture_from_world", Value::Transform(Transform::scale(Vector3::new(6.0, 6.0, 6.0))));
     let ramp = world.add(texture, "bilerp", [("v00", rgb(0.1, 0.1, 0.1)), ("v11", rgb(0.9, 0.8, 0.7))]);
     let wood = world.add(texture, "bitmap", [picture()]);
     let list = [
@@ -22,18 +25,50 @@ fn examples(world: &mut World) -> Vec<(&'static str, Id<Texture>)> {
         ("mirrored bitmap", world.add(texture, "bitmap", [picture(), ("wrap", word("mirror")), twice()])),
         ("checkerboard", world.add(texture, "checkerboard", [("color0", ramp.clone()), twice()])),
         ("scale", world.add(texture, "scale", [("texture", wood.clone()), ("scale", ramp.clone())])),
-        ("mix", world.add(texture, "mix", [("a", wood), ("b", ramp.clone()), ("amount", ramp)])),
+        ("mix", world.add(texture, "mix", [("a", wood), ("b", ramp.clone()), ("amount", ramp.clone())])),
         (
             "power",
             world.add(texture, "power", [("texture", rgb(0.25, 0.5, 0.1)), ("exponent", Value::Float(0.5))]),
         ),
+        ("checkerboard in space", {
+            world.add(texture, "checkerboard", [("dimension", Value::Int(3)), ("color1", rgb(0.9, 0.5, 0.1))])
+        }),
+        ("spherical bitmap", world.add(texture, "bitmap", [picture(), ("mapping", word("spherical"))])),
+        ("cylindrical dots", world.add(texture, "dots", [("mapping", word("cylindrical"))])),
+        ("dots", world.add(texture, "dots", [("inside", ramp), thrice()])),
+        ("planar checkerboard", world.add(texture, "checkerboard", [("mapping", word("planar")), thrice()])),
+        ("clouds", world.add(texture, "fractal", [thrice_in_space()])),
+        ("wrinkles", world.add(texture, "fractal", [("pattern", word("wrinkled")), thrice_in_space()])),
+        ("waves", world.add(texture, "fractal", [("pattern", word("windy")), thrice_in_space()])),
+        (
+            "marble",
+            world.add(texture, "marble", [("variation", Value::Float(1.0)), ("scale", Value::Float(9.0))]),
+        ),
+        ("direction mix", world.add(texture, "direction_mix", [("a", rgb(0.2, 0.3, 0.4))])),
+        ("grid", {
+            let values = (0..24).map(|i| 0.1 + 0.03 * i as f32).collect::<Vec<_>>();
+            world.add(
+                texture,
+                "grid",
+                [
+                    ("values", Value::Floats(values.into())),
+                    ("resolution", Value::Ints([2, 2, 2].into())),
+                    ("channels", Value::Int(3)),
+                    ("wrap", word("mirror")),
+                ],
+            )
+        }),
         ("mesh attribute", world.add(texture, "mesh_attribute", [])),
     ];
     list.into_iter().map(|(label, node)| (label, world.texture_of(&node))).collect()
 }
 
 fn at(world: &World, uv: Point2) -> TextureContext<'_> {
-    TextureContext::at_uv(&world.textures, Wavelengths::RGB, uv)
+    // A plane in space, so that patterns in space vary too.
+    let p = Point3::new(uv.x, 0.3 + 0.5 * uv.y, 0.7 * uv.y - 0.2);
+    let dp_duv = [Vector3::X, Vector3::new(0.0, 0.5, 0.7)];
+    let n = Vector3::new(0.0, -0.7, 0.5).normalized();
+    TextureContext { p, n, dp_duv, ..TextureContext::at_uv(&world.textures, Wavelengths::RGB, uv) }
 }
 
 #[test]
@@ -47,8 +82,21 @@ fn every_kind_has_an_example() {
 #[test]
 fn means_are_those_of_the_unit_square() {
     let mut world = World::default();
-    // Without a mesh nothing is known about its attributes.
-    for (label, id) in examples(&mut world).into_iter().filter(|(label, _)| *label != "mesh attribute") {
+    // What depends on where a surface is has no mean over its parameters, and attributes none without a mesh.
+    let everywhere = [
+        "mesh attribute",
+        "checkerboard in space",
+        "spherical bitmap",
+        "cylindrical dots",
+        "dots",
+        "clouds",
+        "wrinkles",
+        "waves",
+        "marble",
+        "direction mix",
+        "grid",
+    ];
+    for (label, id) in examples(&mut world).into_iter().filter(|(label, _)| !everywhere.contains(label)) {
         let stated = world.textures[id].mean(&world.textures).rgb();
         for c in 0..3 {
             let mean =

@@ -1,6 +1,7 @@
 //! Mesh files: bytes to [`Mesh`](aureole_desc::Mesh). No count in a file is believed before it is held against the bytes that are left.
 
 pub(crate) mod error;
+pub mod ies;
 mod normals;
 pub mod obj;
 pub mod ply;

@@ -13,7 +13,6 @@ const KINDS: &[(&str, &str)] = &[
     ("point", "point"),
     ("spot", "spot"),
     ("directional", "directional"),
-    ("directionalarea", "directional_area"),
     ("constant", "constant"),
     ("envmap", "envmap"),
     ("projector", "projector"),
@@ -41,7 +40,7 @@ pub(super) fn translate<'a>(
     let kind = t.kind(&scope, Family::Light, KINDS)?;
     scope.rename("to_world", "world_from_light");
     // How often a light is picked changes noise, not pictures.
-    scope.ignore(&["sampling_weight"]);
+    scope.ignore(&["sampling_weight", "mis_compensation"]);
     match kind {
         "point" if scope.has("position") && scope.has("world_from_light") => {
             let at = scope.values.span("position");

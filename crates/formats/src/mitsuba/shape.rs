@@ -100,7 +100,8 @@ pub(super) fn translate<'a>(
 /// What a shape is made of, whether it shines, and what it encloses.
 fn surface<'a>(t: &mut Translator<'a, '_, '_>, scope: &mut Scope<'a>) -> Result<(), SceneError> {
     let emitter = scope.take_child(&[Tag::Emitter]);
-    if let Some(emitter) = emitter {
+    // No path from the camera finds a light of a single direction, in Mitsuba neither.
+    if let Some(emitter) = emitter.filter(|child| t.tree.get(child.id).plugin != "directionalarea") {
         t.put(scope, "emission", emitter)?;
     }
     match scope.take_child(&[Tag::Bsdf]) {

@@ -9,6 +9,7 @@ use aureole_spectrum::{SpectrumSource, Tabulated, blackbody};
 use super::scope::Scope;
 use super::translate::Translator;
 use super::xml::numbers;
+use crate::mesh::vol;
 
 /// Mitsuba's plugins and Aureole's words for them; the constant ones become spectra.
 const KINDS: &[(&str, &str)] = &[
@@ -33,8 +34,10 @@ pub(super) fn translate<'a>(
     match kind {
         "constant" => return constant(&mut scope).map(Value::Spectrum),
         "volume" => {
-            t.context.report.warn("volumes as textures are not supported yet: grey is shown", scope.span());
-            return Ok(Value::Spectrum(SpectrumSource::Uniform(0.5)));
+            return match (scope.take_named("volume"), scope.values.try_spectrum("volume")?) {
+                (Some(volume), _) => volume_texture(t, Scope::new(t.tree, t.tree.get(volume.id))?),
+                (None, constant) => Ok(Value::Spectrum(constant.unwrap_or(SpectrumSource::Uniform(0.75)))),
+            };
         }
         "bitmap" => {
             t.put_path(&mut scope)?;
@@ -55,6 +58,41 @@ pub(super) fn translate<'a>(
         _ => {}
     }
     t.finish(scope, Family::Texture, kind).map(Value::Node)
+}
+
+/// A quantity in space, shown where a surface is.
+fn volume_texture<'a>(t: &mut Translator<'a, '_, '_>, mut scope: Scope<'a>) -> Result<Value, SceneError> {
+    if t.kind(&scope, Family::Texture, &[("gridvolume", "grid"), ("constvolume", "constant")])? == "constant"
+    {
+        let value = match scope.take_named("value") {
+            Some(child) => Some(t.value(child.id)?),
+            None => scope.values.try_spectrum("value")?.map(Value::Spectrum),
+        };
+        return Ok(value.unwrap_or(Value::Spectrum(SpectrumSource::Uniform(1.0))));
+    }
+    let (path, at) = t.path(&mut scope, "filename")?;
+    let grid = vol::read(&path, &t.context.options.limits, at)?;
+    let mut grid_from_world = scope.values.transform("to_world")?.inverse();
+    if scope.bool("use_grid_bbox", false)? {
+        let [low, high] = grid.bounds;
+        let size: [f32; 3] = std::array::from_fn(|i| high[i] - low[i]);
+        let box_from_unit = Transform::translate(Vector3::from(low)) * Transform::scale(Vector3::from(size));
+        if !box_from_unit.is_invertible() {
+            let message = "the grid's box is empty".to_owned();
+            return Err(SceneError::Asset { path, message, at });
+        }
+        grid_from_world = box_from_unit.inverse() * grid_from_world;
+    }
+    scope.values.remove("to_world");
+    // Colours are taken as they are with or without it, and how texels are kept is our affair.
+    scope.ignore(&["raw", "accel"]);
+    scope.rename("filter_type", "filter");
+    scope.rename("wrap_mode", "wrap");
+    scope.out.push("values", Value::Floats(grid.values), at);
+    scope.out.push("resolution", Value::Ints(grid.resolution.map(|n| n as i32).as_slice().into()), at);
+    scope.out.push("channels", Value::Int(grid.channels as i64), at);
+    scope.out.push("texture_from_world", Value::Transform(grid_from_world), at);
+    t.finish(scope, Family::Texture, "grid").map(Value::Node)
 }
 
 /// Scale and offset of version 0.6 as a transform.

@@ -3,10 +3,13 @@
 use std::f64::consts::PI;
 
 use aureole_desc::{Family, NodeId, Params, SceneError, Value};
+use aureole_math::{Transform, Vector3};
+use aureole_spectrum::{SpectrumRole, SpectrumSource, luminance};
 
 use super::params::ParamSet;
 use super::shapes::towards;
 use super::state::Reader;
+use crate::mesh::ies;
 
 impl Reader<'_, '_> {
     pub(super) fn light(&mut self, kind: &str, given: &ParamSet) -> Result<(), SceneError> {
@@ -18,15 +21,8 @@ impl Reader<'_, '_> {
             "spot" => self.spot(given, &mut params)?,
             "distant" => self.distant(given, &mut params)?,
             "infinite" => self.infinite(given, &mut params)?,
-            "goniometric" => {
-                self.warn("light `goniometric` is not rendered yet: `point` stands in for it", at);
-                given.touch_all();
-                self.point(given, &mut params)?
-            }
-            "projection" => {
-                self.warn("light `projection` is not rendered yet and left out", at);
-                return Ok(());
-            }
+            "goniometric" => self.goniometric(given, &mut params)?,
+            "projection" => self.projection(given, &mut params)?,
             _ => {
                 let known = ["distant", "goniometric", "infinite", "point", "projection", "spot"];
                 let known = known.map(str::to_owned).to_vec();
@@ -56,6 +52,12 @@ impl Reader<'_, '_> {
         })
     }
 
+    /// The power that a light is scaled to, if one is given: pbrt leaves the factors of colour and `scale` on top.
+    fn power(&mut self, given: &ParamSet, color: &SpectrumSource) -> Result<f64, SceneError> {
+        let factor = luminance(color.to_rgb(SpectrumRole::Illuminant));
+        Ok(given.float("power", 0.0)?.max(0.0) * f64::from(factor))
+    }
+
     fn point(&mut self, given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
         let strength = self.strength(given, 4.0 * PI)?;
         params.push("intensity", Value::Spectrum(given.light("I", strength, self)?), given.at("I"));
@@ -83,6 +85,62 @@ impl Reader<'_, '_> {
         Ok("spot")
     }
 
+    fn goniometric(&mut self, given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+        let at = given.at("filename");
+        let scale = given.float("scale", 1.0)?;
+        let intensity = given.light("I", scale, self)?;
+        let power = self.power(given, &intensity)?;
+        let Some(path) = given.path("filename", self)? else {
+            self.warn("a goniometric light without a `filename` shines evenly", given.span);
+            params.push("intensity", Value::Spectrum(intensity), given.at("I"));
+            return Ok("point");
+        };
+        params.push("intensity", Value::Spectrum(intensity), given.at("I"));
+        params.push("power", Value::Float(power), given.at("power"));
+        // The picture's middle is towards +Y in pbrt, as is straight up of a luminaire's profile.
+        if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("ies")) {
+            let profile = ies::read(&path, self.limits(), at)?;
+            params.push("vertical", Value::Floats(profile.vertical.into()), at);
+            params.push("horizontal", Value::Floats(profile.horizontal.into()), at);
+            params.push("candela", Value::Floats(profile.candela.into()), at);
+            let down = Transform::rotate(Vector3::X, 90.0);
+            params.push("world_from_light", Value::Transform(down), at);
+        } else {
+            params.push("filename", Value::Path(path), at);
+            let [x, y, z, w] =
+                [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+            let swapped = Transform::from_rows([x, y, z, w]).unwrap_or_default();
+            params.push("world_from_light", Value::Transform(swapped), at);
+        }
+        Ok("goniometric")
+    }
+
+    fn projection(&mut self, given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
+        let at = given.span;
+        let path = given.path("filename", self)?.ok_or_else(|| SceneError::MissingParam {
+            element: "projection".into(),
+            param: "filename".into(),
+            wanted: "a picture file".into(),
+            at,
+        })?;
+        let picture = Params::new()
+            .with("filename", Value::Path(path))
+            .with("filter", Value::String("nearest".into()))
+            .with("wrap", Value::String("clamp".into()));
+        let slide = self.add(Family::Texture, "bitmap", picture, given.at("filename"));
+        let scale = given.float("scale", 1.0)?;
+        params.push("irradiance", Value::Node(slide), given.at("filename"));
+        params.push("measure", Value::String("intensity".into()), at);
+        params.push("scale", Value::Float(scale), given.at("scale"));
+        params.push("power", Value::Float(given.float("power", 0.0)? * scale), given.at("power"));
+        params.push("fov", Value::Float(given.float("fov", 90.0)?), given.at("fov"));
+        params.push("fov_axis", Value::String("smaller".into()), at);
+        // pbrt's screen has +X to the right.
+        let mirror = Transform::scale(Vector3::new(-1.0, 1.0, 1.0));
+        params.push("world_from_light", Value::Transform(mirror), at);
+        Ok("projector")
+    }
+
     fn distant(&mut self, given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
         let at = given.span;
         let (from, to) = (given.point3("from", [0.0; 3])?, given.point3("to", [0.0, 0.0, 1.0])?);
@@ -98,21 +156,23 @@ impl Reader<'_, '_> {
         let at = given.span;
         let mut scale = given.float("scale", 1.0)?;
         let illuminance = given.try_float("illuminance")?.filter(|e| *e > 0.0);
-        if given.has("portal") {
-            self.warn("portals are not used yet: the light is sampled as a whole", given.at("portal"));
-        }
         let Some(path) = given.path("filename", self)? else {
             // Even surroundings of radiance one give a surface π.
             scale *= illuminance.map_or(1.0, |e| e / PI);
             params.push("radiance", Value::Spectrum(given.light("L", scale, self)?), at);
             return Ok("constant");
         };
-        if illuminance.is_some() {
-            self.warn("`illuminance` of a picture is not applied yet", given.at("illuminance"));
+        if let Some(illuminance) = illuminance {
+            params.push("illuminance", Value::Float(illuminance), given.at("illuminance"));
         }
         params.push("filename", Value::Path(path), given.at("filename"));
         params.push("scale", Value::Float(scale), at);
         params.push("mapping", Value::String("equal_area".into()), at);
+        if let Some(corners) = given.floats("portal")? {
+            // Corners are in the world, whatever the current transform is.
+            params.push("portal", Value::Floats(corners.into()), given.at("portal"));
+            return Ok("portal_envmap");
+        }
         Ok("envmap")
     }
 
@@ -120,18 +180,20 @@ impl Reader<'_, '_> {
     pub(super) fn area_light(&mut self, given: &ParamSet) -> Result<NodeId, SceneError> {
         let at = given.span;
         let scale = given.float("scale", 1.0)?;
-        if given.has("power") {
-            self.warn("`power` of an area light is not applied yet: `L` and `scale` are", given.at("power"));
-        }
         let mut params = Params::new();
         let radiance = match given.path("filename", self)? {
             Some(path) => {
                 let mut picture = Params::new();
                 picture.push("filename", Value::Path(path), given.at("filename"));
                 picture.push("scale", Value::Float(scale), at);
+                params.push("power", Value::Float(given.float("power", 0.0)? * scale), given.at("power"));
                 Value::Node(self.add(Family::Texture, "bitmap", picture, at))
             }
-            None => Value::Spectrum(given.light("L", scale, self)?),
+            None => {
+                let radiance = given.light("L", scale, self)?;
+                params.push("power", Value::Float(self.power(given, &radiance)?), given.at("power"));
+                Value::Spectrum(radiance)
+            }
         };
         params.push("radiance", radiance, at);
         params.push("two_sided", Value::Bool(given.bool("twosided", false)?), at);

@@ -164,10 +164,6 @@ impl ParamSet {
         self.list.iter().for_each(|p| p.used.set(true));
     }
 
-    pub(super) fn has(&self, name: &str) -> bool {
-        self.get(name).is_some()
-    }
-
     fn numbers(&self, name: &str, wanted: &str) -> Result<Option<&[f64]>, SceneError> {
         match self.get(name) {
             None => Ok(None),

@@ -31,21 +31,31 @@ impl Reader<'_, '_> {
                 let corners =
                     [("v00", "v00", 0.0), ("v01", "v01", 1.0), ("v10", "v10", 0.0), ("v11", "v11", 1.0)];
                 let mut params = self.slots(given, &corners)?;
-                params.push("to_uv", Value::Transform(self.mapping(given)?), at);
+                self.mapping(given, Transform::IDENTITY, &mut params)?;
                 ("bilerp", params)
             }
             "checkerboard" => {
                 let mut params = self.slots(given, &[("tex1", "color0", 1.0), ("tex2", "color1", 0.0)])?;
-                if given.int("dimension", 2)? != 2 {
-                    self.warn("three-dimensional checkerboards are not rendered yet", at);
-                }
                 // pbrt's squares are one unit wide, Aureole's half a unit.
-                let half = Transform::scale(Vector3::new(0.5, 0.5, 1.0));
-                params.push("to_uv", Value::Transform(half * self.mapping(given)?), at);
+                let half = Transform::scale(Vector3::new(0.5, 0.5, 0.5));
+                if given.int("dimension", 2)? == 3 {
+                    params.push("dimension", Value::Int(3), at);
+                    self.place(half, at, &mut params)?;
+                } else {
+                    self.mapping(given, half, &mut params)?;
+                }
                 ("checkerboard", params)
             }
             "imagemap" => ("bitmap", self.image(given)?),
-            "directionmix" | "dots" | "fbm" | "marble" | "ptex" | "windy" | "wrinkled" => {
+            "dots" => {
+                let mut params =
+                    self.slots(given, &[("inside", "inside", 1.0), ("outside", "outside", 0.0)])?;
+                self.mapping(given, Transform::IDENTITY, &mut params)?;
+                ("dots", params)
+            }
+            "directionmix" => ("direction_mix", self.direction_mix(given)?),
+            "fbm" | "wrinkled" | "windy" | "marble" => self.noise(class, given)?,
+            "ptex" => {
                 self.warn(format!("texture `{class}` is not rendered yet: grey stands in for it"), at);
                 given.touch_all();
                 ("constant", Params::new().with("value", Value::Float(0.5)))
@@ -93,24 +103,88 @@ impl Reader<'_, '_> {
         Ok(params)
     }
 
-    /// The map from surface parameters to texture coordinates.
-    fn mapping(&mut self, given: &ParamSet) -> Result<Transform, SceneError> {
-        if let Some(kind) = given.text("mapping")?.filter(|kind| *kind != "uv") {
-            let (message, at) =
-                (format!("mapping `{kind}` is not rendered yet: `uv` is used"), given.at("mapping"));
-            for ignored in ["v1", "v2"] {
-                given.get(ignored);
-            }
-            self.warn(message, at);
+    /// Noise in the space of the current transform.
+    fn noise(&mut self, class: &str, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let at = given.span;
+        let mut params = Params::new();
+        self.place(Transform::IDENTITY, at, &mut params)?;
+        if class != "windy" {
+            params.push("octaves", Value::Int(given.int("octaves", 8)?), given.at("octaves"));
+            params.push("roughness", Value::Float(given.float("roughness", 0.5)?), given.at("roughness"));
         }
+        if class == "marble" {
+            params.push("scale", Value::Float(given.float("scale", 1.0)?), given.at("scale"));
+            params.push("variation", Value::Float(given.float("variation", 0.2)?), given.at("variation"));
+            return Ok(("marble", params));
+        }
+        params.push("pattern", Value::String(class.to_owned()), at);
+        Ok(("fractal", params))
+    }
+
+    fn direction_mix(&mut self, given: &ParamSet) -> Result<Params, SceneError> {
+        let mut params = self.slots(given, &[("tex1", "a", 0.0), ("tex2", "b", 1.0)])?;
+        let direction = given.point3("dir", [0.0, 1.0, 0.0])?.map(|x| x as f32);
+        let world = self.ctm(given.span)?.vector(Vector3::from(direction));
+        params.push("direction", Value::Vec3([world.x, world.y, world.z].map(f64::from)), given.at("dir"));
+        Ok(params)
+    }
+
+    /// The way from the world into the texture's space, which is that of the current transform, and on by `then`.
+    fn place(&mut self, then: Transform, at: Span, params: &mut Params) -> Result<(), SceneError> {
+        let texture_from_world = then * self.ctm(at)?.inverse();
+        params.push("texture_from_world", Value::Transform(texture_from_world), at);
+        Ok(())
+    }
+
+    /// How texture coordinates come about, and `then` applied to them.
+    fn mapping(&mut self, given: &ParamSet, then: Transform, params: &mut Params) -> Result<(), SceneError> {
+        let at = given.at("mapping");
         let number = |name: &str, default: f64| given.float(name, default).map(|x| x as f32);
-        let scale = Vector3::new(number("uscale", 1.0)?, number("vscale", 1.0)?, 1.0);
-        let shift = Vector3::new(number("udelta", 0.0)?, number("vdelta", 0.0)?, 0.0);
-        let scale = Transform::scale(scale);
-        if !scale.is_invertible() {
-            return Err(SceneError::invalid("`uscale` and `vscale` must not be zero", given.span));
+        match given.text("mapping")?.unwrap_or("uv") {
+            "uv" => {
+                let scale = Vector3::new(number("uscale", 1.0)?, number("vscale", 1.0)?, 1.0);
+                let shift = Vector3::new(number("udelta", 0.0)?, number("vdelta", 0.0)?, 0.0);
+                let scale = Transform::scale(scale);
+                if !scale.is_invertible() {
+                    return Err(SceneError::invalid("`uscale` and `vscale` must not be zero", given.span));
+                }
+                let to_uv = then * Transform::translate(shift) * scale;
+                params.push("to_uv", Value::Transform(to_uv), at);
+                return Ok(());
+            }
+            kind @ ("spherical" | "cylindrical") => {
+                params.push("mapping", Value::String(kind.to_owned()), at);
+                self.place(Transform::IDENTITY, at, params)?;
+            }
+            "planar" => {
+                params.push("mapping", Value::String("planar".to_owned()), at);
+                let (v1, v2) = (given.point3("v1", [1.0, 0.0, 0.0])?, given.point3("v2", [0.0, 1.0, 0.0])?);
+                let (du, dv) = (given.float("udelta", 0.0)?, given.float("vdelta", 0.0)?);
+                let plane = Transform::from_rows([
+                    [v1[0], v1[1], v1[2], du],
+                    [v2[0], v2[1], v2[2], dv],
+                    // Any third axis will do that makes an invertible matrix: the plane's own normal.
+                    [
+                        v1[1] * v2[2] - v1[2] * v2[1],
+                        v1[2] * v2[0] - v1[0] * v2[2],
+                        v1[0] * v2[1] - v1[1] * v2[0],
+                        0.0,
+                    ],
+                    [0.0, 0.0, 0.0, 1.0],
+                ]);
+                let plane = plane
+                    .filter(Transform::is_invertible)
+                    .ok_or_else(|| SceneError::invalid("`v1` and `v2` must span a plane", given.span))?;
+                self.place(plane, at, params)?;
+            }
+            other => {
+                let message =
+                    format!("`mapping` is `uv`, `spherical`, `cylindrical` or `planar`, not `{other}`");
+                return Err(SceneError::invalid(message, at));
+            }
         }
-        Ok(Transform::translate(shift) * scale)
+        params.push("to_uv", Value::Transform(then), at);
+        Ok(())
     }
 
     fn image(&mut self, given: &ParamSet) -> Result<Params, SceneError> {
@@ -137,7 +211,7 @@ impl Reader<'_, '_> {
         encoding(given.text("encoding")?.unwrap_or("sRGB"), given.at("encoding"), &mut params)?;
         params.push("scale", Value::Float(given.float("scale", 1.0)?), at);
         params.push("invert", Value::Bool(given.bool("invert", false)?), at);
-        params.push("to_uv", Value::Transform(self.mapping(given)?), at);
+        self.mapping(given, Transform::IDENTITY, &mut params)?;
         given.get("maxanisotropy");
         Ok(params)
     }

@@ -103,7 +103,7 @@ pub(super) fn environment(
     let mut sum = Spectrum::ZERO;
     for &id in scene.environments() {
         let light = &scene.lights[id];
-        let radiance = light.environment(&context, wi);
+        let radiance = light.environment(&context, reference, wi);
         if !radiance.is_black() {
             sum += radiance * weight(scene.picker.pmf(id) * light.pdf_omega(&context, reference, wi, None));
         }

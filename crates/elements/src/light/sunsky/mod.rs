@@ -224,7 +224,7 @@ impl LightOps for SunSky {
         self.density(self.local(wi))
     }
 
-    fn environment(&self, _: &LightContext<'_>, w: Vector3) -> Spectrum {
+    fn environment(&self, _: &LightContext<'_>, _: Point3, w: Vector3) -> Spectrum {
         self.radiance(self.local(w))
     }
 

@@ -5,7 +5,7 @@
 //! the mean radiance; then for each turbidity and thirty elevations (2°, 5° .. 89°) the mean radiance of the sun's disk: their
 //! spectral solar radiance with limb darkening, integrated against the CIE 1931 curves at their eleven wavelengths.
 //!
-//! Radiance is in W·sr⁻¹·m⁻² per nanometre over the luminance curve's integral (106.857 nm), linear Rec. 709.
+//! Radiance is in W·sr⁻¹·m⁻² per nanometre over the luminance curve's integral (106.75 nm), linear Rec. 709.
 //!
 //! References: [Hošek and Wilkie 2012] "An Analytic Model for Full Spectral Sky-Dome Radiance"; [Hošek and Wilkie 2013]
 //! "Adding a Solar-Radiance Function to the Hošek-Wilkie Skylight Model".
