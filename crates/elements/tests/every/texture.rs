@@ -13,8 +13,7 @@ fn examples(world: &mut World) -> Vec<(&'static str, Id<Texture>)> {
     let picture = || ("filename", Value::Path("wood.png".into()));
     let twice = || ("to_uv", Value::Transform(Transform::scale(Vector3::new(2.0, 3.0, 1.0))));
     let thrice = || ("to_uv", Value::Transform(Transform::scale(Vector3::new(6.0, 6.0, 1.0))));
-    let thrice_in_space =
-        || ("texture_from_world", Value::Transform(Transform::scale(Vector3::new(6.0, 6.0, 6.0))));
+    let thrice_in_space = || ("texture_from_world", Value::Transform(Transform::scale(Vector3::splat(1.5))));
     let ramp = world.add(texture, "bilerp", [("v00", rgb(0.1, 0.1, 0.1)), ("v11", rgb(0.9, 0.8, 0.7))]);
     let wood = world.add(texture, "bitmap", [picture()]);
     let list = [
@@ -37,12 +36,19 @@ fn examples(world: &mut World) -> Vec<(&'static str, Id<Texture>)> {
         ("cylindrical dots", world.add(texture, "dots", [("mapping", word("cylindrical"))])),
         ("dots", world.add(texture, "dots", [("inside", ramp), thrice()])),
         ("planar checkerboard", world.add(texture, "checkerboard", [("mapping", word("planar")), thrice()])),
-        ("clouds", world.add(texture, "fractal", [thrice_in_space()])),
-        ("wrinkles", world.add(texture, "fractal", [("pattern", word("wrinkled")), thrice_in_space()])),
+        ("clouds", world.add(texture, "fractal", [("octaves", Value::Int(3)), thrice_in_space()])),
+        (
+            "wrinkles",
+            world.add(
+                texture,
+                "fractal",
+                [("pattern", word("wrinkled")), ("octaves", Value::Int(2)), thrice_in_space()],
+            ),
+        ),
         ("waves", world.add(texture, "fractal", [("pattern", word("windy")), thrice_in_space()])),
         (
             "marble",
-            world.add(texture, "marble", [("variation", Value::Float(1.0)), ("scale", Value::Float(9.0))]),
+            world.add(texture, "marble", [("variation", Value::Float(1.0)), ("octaves", Value::Int(3))]),
         ),
         ("direction mix", world.add(texture, "direction_mix", [("a", rgb(0.2, 0.3, 0.4))])),
         ("grid", {

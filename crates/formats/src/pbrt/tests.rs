@@ -115,12 +115,34 @@ fn path_lengths_are_converted() {
 }
 
 #[test]
+fn lights_and_textures_know_their_space() {
+    let desc = good(
+        "WorldBegin Translate 1 2 3 Texture \"n\" \"float\" \"fbm\" \"integer octaves\" 3
+         Texture \"p\" \"spectrum\" \"dots\" \"string mapping\" \"planar\" \"vector3 v1\" [0 0 2] \"float udelta\" 0.5
+         LightSource \"infinite\" \"string filename\" \"sky.exr\" \"point3 portal\" [0 0 0  0 1 0  1 1 0  1 0 0]
+         LightSource \"projection\" \"string filename\" \"slide.png\" \"float power\" 9 \"float scale\" 2",
+    );
+    let texture = |name: &str| {
+        let found = desc.nodes().find(|(_, node)| node.name.as_deref() == Some(name));
+        let mut params = found.map(|(_, node)| node.params.clone()).unwrap_or_default();
+        params.transform("texture_from_world").unwrap()
+    };
+    assert_eq!(texture("n").point(Point3::new(1.0, 2.0, 3.0)), Point3::ORIGIN);
+    // s = p·v1 + udelta in the space of the transform.
+    assert_eq!(texture("p").point(Point3::new(1.0, 2.0, 4.0)).x, 2.5);
+    let kinds: Vec<&str> = desc.lights.iter().map(|&id| desc[id].kind.as_str()).collect();
+    assert_eq!(kinds, ["portal_envmap", "projector"]);
+    let power = desc[desc.lights[1]].params.get("power");
+    assert_eq!(power, Some(&Value::Float(18.0)));
+}
+
+#[test]
 fn what_is_not_rendered_is_named() {
     for (text, word) in [
         ("Shape \"curve\"", "curve"),
         ("Material \"subsurface\"", "subsurface"),
-        ("LightSource \"projection\"", "projection"),
-        ("Texture \"a\" \"float\" \"fbm\"", "fbm"),
+        ("LightSource \"goniometric\"", "goniometric"),
+        ("Texture \"a\" \"float\" \"ptex\"", "ptex"),
         ("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"", "media"),
         ("MediumInterface \"fog\" \"\"", "media"),
         ("ActiveTransform EndTime Translate 1 0 0 Shape \"sphere\"", "motion"),
