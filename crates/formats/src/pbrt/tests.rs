@@ -212,7 +212,7 @@ fn a_scene_of_everything_is_read() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/everything.pbrt");
     let (mut sources, mut report) = (Sources::default(), Report::default());
     let desc = load(path.as_ref(), &LoadOptions::default(), &mut sources, &mut report).unwrap();
-    assert!(desc.shapes.len() >= 15 && desc.lights.len() == 4);
+    assert!(desc.shapes.len() >= 15 && desc.lights.len() == 6);
     assert!(report.warnings.iter().all(|w| !w.message.contains("not used")), "{:?}", report.warnings);
 }
 
