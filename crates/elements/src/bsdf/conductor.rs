@@ -103,21 +103,32 @@ impl Metallic {
 
     #[inline]
     pub(super) fn at(&self, at: &TextureContext<'_>) -> Metal {
-        let index = match self.color {
-            Color::Mirror => None,
-            Color::Index([eta, k]) => Some([at.spectrum(eta), at.spectrum(k)]),
-            Color::Reflectance(r) => Some([Spectrum::ONE, absorption(at.spectrum(r))]),
+        let response = match self.color {
+            Color::Mirror => Response::Mirror,
+            Color::Index([eta, k]) => Response::Index([at.spectrum(eta), at.spectrum(k)]),
+            Color::Reflectance(r) => Response::Index([Spectrum::ONE, absorption(at.spectrum(r))]),
         };
         let film = self.film.and_then(|film| film.at(at));
-        Metal { index, tint: at.spectrum(self.tint), film }.below(self.ext_eta)
+        Metal { response, tint: at.spectrum(self.tint), film }.below(self.ext_eta)
     }
 }
 
-/// A metal's index and tint at a point.
+/// How a metal's reflectance depends on the angle.
+#[derive(Clone, Copy, Debug)]
+pub enum Response {
+    /// Not at all: a perfect mirror.
+    Mirror,
+    /// By a complex index.
+    Index([Spectrum; 2]),
+    /// By Schlick's approximation from the reflectance at normal incidence, darkened by a factor around 82°.
+    Tinted([Spectrum; 2]),
+}
+
+/// A metal's response and tint at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Metal {
-    /// Complex index; none for a perfect mirror.
-    pub index: Option<[Spectrum; 2]>,
+    /// What makes its colour.
+    pub response: Response,
     /// Factor.
     pub tint: Spectrum,
     /// A transparent film on it.
@@ -128,18 +139,28 @@ impl Metal {
     /// The same metal below a medium of index `eta` instead of vacuum.
     #[inline]
     pub fn below(self, eta: f32) -> Self {
-        Self { index: self.index.map(|[n, k]| [n / eta, k / eta]), ..self }
+        match self.response {
+            Response::Index([n, k]) => Self { response: Response::Index([n / eta, k / eta]), ..self },
+            _ => self,
+        }
     }
 
     /// Reflectance at a cosine of incidence.
     #[inline]
     pub fn reflectance(&self, cos_i: f32) -> Spectrum {
-        match self.index {
-            Some([eta, k]) => {
-                let bare = || fresnel::conductor(cos_i, eta, k);
-                self.film.map_or_else(bare, |film| film.reflectance(cos_i, eta, k)) * self.tint
-            }
-            None => self.tint,
+        let bare = match self.response {
+            Response::Mirror => return self.tint,
+            Response::Index([eta, k]) => fresnel::conductor(cos_i, eta, k),
+            Response::Tinted([f0, edge]) => fresnel::tinted(cos_i, f0, edge),
+        };
+        self.film.map_or(bare, |film| bare.lerp(self.filmed(film, cos_i), film.weight)) * self.tint
+    }
+
+    fn filmed(&self, film: Film, cos_i: f32) -> Spectrum {
+        match self.response {
+            Response::Index([eta, k]) => film.reflectance(cos_i, eta, k),
+            Response::Tinted([f0, _]) => film.reflectance(cos_i, Spectrum::ONE, absorption(f0)),
+            Response::Mirror => Spectrum::ONE,
         }
     }
 }

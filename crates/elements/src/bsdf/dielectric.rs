@@ -112,7 +112,8 @@ impl Glass {
         if bare.cos_t == 0.0 {
             return (Spectrum::ONE, bare);
         }
-        (film.reflectance(above, Spectrum::splat(self.eta), Spectrum::ZERO), bare)
+        let filmed = film.reflectance(above, Spectrum::splat(self.eta), Spectrum::ZERO);
+        (Spectrum::splat(bare.reflectance).lerp(filmed, film.weight), bare)
     }
 
     /// All light that is reflected or passes.

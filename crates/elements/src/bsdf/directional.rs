@@ -90,7 +90,7 @@ impl AlbedoTable {
         let values = std::array::from_fn(|row| {
             let alpha = step(row).max(1e-3);
             let surface = Microfacet::new(distribution, alpha, alpha);
-            std::array::from_fn(|i| albedo(&surface, step(i).powi(2).max(1e-4)).clamp(0.01, 1.0))
+            std::array::from_fn(|i| albedo(&surface, step(i).powi(2).max(1e-4)).clamp(1e-4, 1.0))
         });
         Self { values: Box::new(values) }
     }
@@ -107,6 +107,11 @@ impl AlbedoTable {
         Self::new(distribution, |surface, cos| {
             reflectance(surface, cos, eta) + transmittance(surface, cos, eta)
         })
+    }
+
+    /// The table of what a dielectric boundary reflects of light from above.
+    pub(super) fn gloss(eta: f32) -> Self {
+        Self::new(Distribution::Ggx, |surface, cos| reflectance(surface, cos, eta))
     }
 
     /// The table's value, bilinearly.

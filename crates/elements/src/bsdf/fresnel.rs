@@ -51,6 +51,20 @@ pub fn conductor(cos_i: f32, eta: Spectrum, k: Spectrum) -> Spectrum {
     (perpendicular + parallel) * 0.5
 }
 
+/// Reflectance of a metal from that at normal incidence, `f0`, and a factor `edge` on Schlick's curve at 82°.
+///
+/// # References
+/// [Kutz, Hašan and Edmondson 2021] "Novel aspects of the Adobe Standard Material": the F82-tint model.
+#[inline]
+pub fn tinted(cos_i: f32, f0: Spectrum, edge: Spectrum) -> Spectrum {
+    /// The cosine of about 82°, where the correction is strongest.
+    const PEAK: f32 = 1.0 / 7.0;
+    let schlick = |cos: f32| f0 + (Spectrum::ONE - f0) * (1.0 - cos).clamp(0.0, 1.0).powi(5);
+    let strength = schlick(PEAK) * (Spectrum::ONE - edge) * (1.0 / (PEAK * (1.0 - PEAK).powi(6)));
+    let cos = cos_i.abs().min(1.0);
+    (schlick(cos) - strength * (cos * (1.0 - cos).powi(6))).clamp(0.0, 1.0)
+}
+
 /// The mean reflectance of a dielectric boundary under uniform diffuse light from its outer side.
 ///
 /// # References
@@ -84,6 +98,15 @@ mod tests {
             let metal = conductor(cos, Spectrum::splat(1.5), Spectrum::ZERO);
             assert!((metal[0] - dielectric(cos, 1.5).reflectance).abs() < 1e-5);
         }
+    }
+
+    #[test]
+    fn a_tinted_metal_has_its_colours_where_they_are_asked_for() {
+        let (f0, edge) = (Spectrum::splat(0.7), Spectrum::splat(0.5));
+        assert!((tinted(1.0, f0, edge)[0] - 0.7).abs() < 1e-6);
+        let plain = tinted(1.0 / 7.0, f0, Spectrum::ONE)[0];
+        assert!((tinted(1.0 / 7.0, f0, edge)[0] - 0.5 * plain).abs() < 1e-6);
+        assert!((tinted(0.0, f0, edge)[0] - 1.0).abs() < 1e-6);
     }
 
     #[test]

@@ -4,9 +4,9 @@ use aureole_math::{Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
 use super::{
-    ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, HairLobe, LayeredLobe, MeasuredLobe,
-    MerlLobe, NullLobe, PlasticLobe, PrincipledLobe, PrincipledThinLobe, RoughConductorLobe,
-    RoughDielectricLobe, RoughPlasticLobe, SheenLobe, ThinDielectricLobe,
+    ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, GlossLobe, HairLobe, LayeredLobe,
+    MeasuredLobe, MerlLobe, NullLobe, PlasticLobe, PrincipledLobe, PrincipledThinLobe, RoughConductorLobe,
+    RoughDielectricLobe, RoughDiffuseLobe, RoughPlasticLobe, SheenLobe, ThinDielectricLobe,
 };
 
 /// What travels along a path: refraction squeezes radiance, but not importance.
@@ -185,6 +185,8 @@ lobes! {
     Layered(LayeredLobe),
     Hair(HairLobe),
     Sheen(SheenLobe),
+    Gloss(GlossLobe),
+    RoughDiffuse(RoughDiffuseLobe),
     Measured(MeasuredLobe),
     Merl(MerlLobe),
     Null(NullLobe),

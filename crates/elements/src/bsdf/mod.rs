@@ -15,6 +15,7 @@ mod diffuse_transmission;
 mod directional;
 mod disney;
 pub mod fresnel;
+mod gloss;
 mod hair;
 mod hair_lobe;
 mod layered;
@@ -25,12 +26,14 @@ mod merl;
 pub mod microfacet;
 mod normal_map;
 mod null;
+mod open_pbr;
 mod phase;
 mod plastic;
 mod principled;
 mod principled_thin;
 mod rough_conductor;
 mod rough_dielectric;
+mod rough_diffuse;
 mod rough_plastic;
 mod sheen;
 mod stack;
@@ -53,6 +56,7 @@ pub use conductor::{Conductor, ConductorLobe};
 pub use dielectric::{Dielectric, DielectricLobe};
 pub use diffuse::{Diffuse, DiffuseLobe};
 pub use diffuse_transmission::{DiffuseTransmission, DiffuseTransmissionLobe};
+pub use gloss::GlossLobe;
 pub use hair::Hair;
 pub use hair_lobe::HairLobe;
 pub use layered::{Base, LayeredLobe};
@@ -62,11 +66,13 @@ pub use measured::{Measured, MeasuredLobe};
 pub use merl::{Merl, MerlLobe};
 pub use normal_map::NormalMap;
 pub use null::{Null, NullLobe};
+pub use open_pbr::OpenPbr;
 pub use plastic::{Plastic, PlasticLobe};
 pub use principled::{Principled, PrincipledLobe};
 pub use principled_thin::{PrincipledThin, PrincipledThinLobe};
 pub use rough_conductor::{RoughConductor, RoughConductorLobe};
 pub use rough_dielectric::{RoughDielectric, RoughDielectricLobe};
+pub use rough_diffuse::{RoughDiffuse, RoughDiffuseLobe};
 pub use rough_plastic::{RoughPlastic, RoughPlasticLobe};
 pub use sheen::{Sheen, SheenLobe};
 pub use stack::{Bsdf, BsdfSample};
@@ -123,6 +129,8 @@ registry! {
     coated_conductor::CoatedConductor as CoatedConductor = "coated_conductor",
     principled::Principled as Principled = "principled",
     principled_thin::PrincipledThin as PrincipledThin = "principled_thin",
+    open_pbr::OpenPbr as OpenPbr = "open_pbr",
+    rough_diffuse::RoughDiffuse as RoughDiffuse = "rough_diffuse",
     measured::Measured as Measured = "measured",
     merl::Merl as Merl = "merl",
     hair::Hair as Hair = "hair",

@@ -7,7 +7,7 @@ use aureole_spectrum::Spectrum;
 use super::{Lobe, LobeFlags, LobeOps, TransportMode};
 
 /// How many lobes a BSDF may have; blends deeper than that lose their last ones.
-const MAX_LOBES: usize = 4;
+const MAX_LOBES: usize = 8;
 
 /// A lobe with its share of the whole and its place.
 #[derive(Clone, Debug)]
@@ -159,6 +159,7 @@ impl Bsdf {
     #[inline]
     pub fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {
         match self.lobes.as_slice() {
+            [] => 0.0,
             [only] => only.pdf_omega(wo, wi),
             lobes => {
                 let total: f32 = lobes.iter().map(|placed| placed.weight).sum();

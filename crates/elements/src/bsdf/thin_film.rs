@@ -47,7 +47,7 @@ impl FilmTexture {
     #[inline]
     pub(super) fn at(&self, at: &TextureContext<'_>) -> Option<Film> {
         let thickness = at.float(self.thickness);
-        (thickness > 0.0).then_some(Film { eta: self.eta, thickness })
+        (thickness > 0.0).then_some(Film { eta: self.eta, thickness, weight: 1.0 })
     }
 }
 
@@ -58,6 +58,8 @@ pub struct Film {
     pub eta: f32,
     /// Thickness in nanometres.
     pub thickness: f32,
+    /// How much of the surface it covers.
+    pub weight: f32,
 }
 
 /// A complex number.
@@ -221,7 +223,7 @@ mod tests {
     #[test]
     fn colours_are_those_of_airy_s_formula() {
         for thickness in [150.0_f32, 300.0, 450.0, 700.0] {
-            let (film, eta) = (Film { eta: 1.33, thickness }, 1.8);
+            let (film, eta) = (Film { eta: 1.33, thickness, weight: 1.0 }, 1.8);
             let lambda: Vec<f32> = (0..95).map(|i| 360.0 + 5.0 * i as f32).collect();
             let values = lambda.iter().map(|&l| airy(&film, eta, l)).collect();
             let exact = SpectrumSource::Tabulated(Arc::new(Tabulated { lambda, values }));
@@ -235,7 +237,7 @@ mod tests {
 
     #[test]
     fn a_film_of_the_base_s_index_is_not_seen() {
-        let film = Film { eta: 1.5, thickness: 400.0 };
+        let film = Film { eta: 1.5, thickness: 400.0, weight: 1.0 };
         for cos in [0.2_f32, 0.6, 1.0] {
             let found = film.reflectance(cos, Spectrum::splat(1.5), Spectrum::ZERO)[1];
             let bare = fresnel::dielectric(cos, 1.5).reflectance;

@@ -36,6 +36,13 @@ pub const GALLERY: &[GalleryScene] = &[
         text: include_str!("materials.xml"),
     },
     GalleryScene {
+        name: "open-pbr",
+        summary: "nine balls of one material, the OpenPBR surface: velvet, clay, car paint, glass, gold",
+        format: "mitsuba",
+        suffix: "xml",
+        text: include_str!("open-pbr.xml"),
+    },
+    GalleryScene {
         name: "glass",
         summary: "clear, frosted and hollow glass that gathers light on a table",
         format: "mitsuba",

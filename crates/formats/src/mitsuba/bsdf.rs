@@ -28,6 +28,8 @@ const KINDS: &[(&str, &str)] = &[
     ("principled", "principled"),
     ("principledthin", "principled_thin"),
     ("hair", "hair"),
+    // Not Mitsuba's, but asked for by that name.
+    ("openpbr", "open_pbr"),
     ("measured", "measured"),
     ("measured_polarized", "measured_polarized"),
     ("pplastic", "plastic"),

@@ -65,7 +65,7 @@ impl Reader<'_, '_> {
             "coatedconductor" => self.coated_conductor(given)?,
             "hair" => ("hair", self.hair(given)?),
             "measured" => self.measured(given)?,
-            "subsurface" => self.placeholder(kind, given)?,
+            "subsurface" => self.subsurface(given)?,
             _ => {
                 let known = KINDS.iter().map(|k| (*k).to_owned()).collect();
                 return Err(SceneError::UnknownKind {
@@ -302,13 +302,45 @@ impl Reader<'_, '_> {
         Ok(("blend", params))
     }
 
-    /// Something near to a material that is not there yet.
-    fn placeholder(&mut self, kind: &str, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
-        self.warn(
-            format!("material `{kind}` is not rendered yet: a matte surface stands in for it"),
-            given.span,
-        );
-        given.touch_all();
-        Ok(("diffuse", self.copied(given, &[("reflectance", "reflectance")])?))
+    /// The matte look of light that scatters inside, below a coat; light does not travel along the surface.
+    fn subsurface(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
+        let at = given.span;
+        self.warn("`subsurface` is rendered as a matte base below a coat: light stays where it enters", at);
+        let mut params = Params::new();
+        let g = given.float("g", 0.0)? as f32;
+        let absorption = given.spectrum("sigma_a", self)?;
+        let scattering = given.spectrum("sigma_s", self)?;
+        let reflectance = match given.textured("reflectance", self)? {
+            Some(reflectance) => reflectance,
+            None => {
+                // pbrt's defaults, per millimetre.
+                let [a, s] = [(absorption, [0.0011, 0.0024, 0.014]), (scattering, [2.55, 3.21, 3.77])]
+                    .map(|(given, default)| given.map_or(default, |x| x.to_rgb(SpectrumRole::Unbounded)));
+                Value::Spectrum(SpectrumSource::Rgb([0, 1, 2].map(|i| diffuse_albedo(a[i], s[i], g))))
+            }
+        };
+        params.push("reflectance", reflectance, at);
+        let eta = if given.has("eta") { self.eta(given, "eta")? } else { 1.33 };
+        params.push("int_ior", Value::Float(eta), at);
+        params.push("ext_ior", Value::Float(1.0), at);
+        let [u, v] = self.alphas(given, "", 0.0)?;
+        params.push("alpha_u", u, at);
+        params.push("alpha_v", v, at);
+        // How far light travels is what is not rendered; a name stands for coefficients.
+        for unused in ["mfp", "scale", "name"] {
+            given.get(unused);
+        }
+        Ok(("coated_diffuse", params))
     }
+}
+
+/// The albedo of a half space that absorbs and scatters: a fit to its exact solution.
+///
+/// # References
+/// [Kulla and Conty 2017] "Revisiting Physically Based Shading at Imageworks"; similarity by van de Hulst's `s`.
+fn diffuse_albedo(absorption: f32, scattering: f32, g: f32) -> f32 {
+    let total = (absorption + scattering).max(1e-9);
+    let single = scattering.max(0.0) / total;
+    let s = ((1.0 - single) / (1.0 - single * g).max(1e-6)).max(0.0).sqrt();
+    (1.0 - s) * (1.0 - 0.139 * s) / (1.0 + 1.17 * s)
 }

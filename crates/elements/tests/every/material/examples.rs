@@ -207,6 +207,33 @@ pub(super) fn examples(world: &mut World) -> Vec<Example> {
                 [("alpha", Float(0.3)), ("film_thickness", Float(400.0)), ("film_ior", Float(1.8))],
             )
         }),
+        ("rough diffuse", true, {
+            world.add(bsdf, "rough_diffuse", [("reflectance", rgb(0.9, 0.5, 0.2)), ("roughness", Float(0.7))])
+        }),
+        ("open_pbr by default", false, world.add(bsdf, "open_pbr", [])),
+        ("open_pbr with everything", false, {
+            world.add(
+                bsdf,
+                "open_pbr",
+                [
+                    ("base_color", rgb(0.8, 0.5, 0.3)),
+                    ("base_diffuse_roughness", Float(0.4)),
+                    ("base_metalness", Float(0.3)),
+                    ("specular_color", rgb(0.9, 0.8, 0.7)),
+                    ("specular_roughness_anisotropy", Float(0.4)),
+                    ("transmission_weight", Float(0.3)),
+                    ("transmission_color", rgb(0.6, 0.9, 0.7)),
+                    ("subsurface_weight", Float(0.2)),
+                    ("coat_weight", Float(0.6)),
+                    ("coat_color", rgb(0.9, 0.8, 0.6)),
+                    ("coat_roughness", Float(0.3)),
+                    ("fuzz_weight", Float(0.4)),
+                    ("fuzz_color", rgb(0.5, 0.6, 0.9)),
+                    ("thin_film_weight", Float(0.5)),
+                    ("geometry_opacity", Float(0.9)),
+                ],
+            )
+        }),
         ("measured isotropic", false, measured(world, 1)),
         ("measured anisotropic", false, measured(world, 4)),
         ("merl", true, {

@@ -1,0 +1,227 @@
+//! The layers of an OpenPBR surface at a point, as weighted lobes.
+
+use aureole_spectrum::Spectrum;
+
+use super::super::conductor::{Metal, Response};
+use super::super::dielectric::Glass;
+use super::super::microfacet::{Distribution, Microfacet};
+use super::super::{
+    Bsdf, ConductorLobe, DielectricLobe, Film, GlossLobe, LobeOps, MaterialContext, NullLobe,
+    RoughConductorLobe, RoughDielectricLobe, RoughDiffuseLobe, SheenLobe, ThinDielectricLobe, fresnel,
+};
+use super::{Finish, OpenPbr};
+use crate::TextureContext;
+
+/// The facets of a roughness; none if it is smooth [specification, "Microfacet model"].
+fn facets(roughness: f32, anisotropy: f32) -> Option<Microfacet> {
+    let alpha = roughness * roughness;
+    let narrow = 1.0 - anisotropy;
+    let alpha_u = alpha * (2.0 / (1.0 + narrow * narrow)).sqrt();
+    (alpha_u > 1e-3).then(|| Microfacet::new(Distribution::Ggx, alpha_u, narrow * alpha_u))
+}
+
+/// The index that reflects `weight` times as much at normal incidence as `ior` does.
+fn modulated(ior: f32, weight: f32) -> f32 {
+    let r = weight.max(0.0).sqrt() * (ior - 1.0) / (ior + 1.0);
+    (1.0 + r.min(0.99)) / (1.0 - r.min(0.99))
+}
+
+/// What the layers above leave to those below.
+struct Light {
+    /// Share, for choosing lobes.
+    weight: f32,
+    /// Colour, at most one.
+    tint: Spectrum,
+}
+
+/// Adds all lobes.
+pub(super) fn evaluate(m: &OpenPbr, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
+    let opacity = at.texture.float(m.opacity).clamp(0.0, 1.0);
+    out.push(NullLobe, weight * (1.0 - opacity), at.frame, at.frame.n);
+    let mut light = Light { weight: weight * opacity, tint: Spectrum::ONE };
+    let cos = at.wo.dot(at.frame.n);
+    if cos <= 0.0 {
+        // From inside, only glass is seen.
+        let glass = m.transmission.weight_at(&at.texture) * (1.0 - metalness(m, &at.texture));
+        light.weight *= glass;
+        return translucent(m, at, &light, roughness(m, &at.texture), out);
+    }
+    fuzz(m, at, &mut light, out);
+    let coated = coat(m, at, cos, &mut light, out);
+    base(m, at, cos, &light, coated, out);
+}
+
+fn metalness(m: &OpenPbr, at: &TextureContext<'_>) -> f32 {
+    at.float(m.metalness).clamp(0.0, 1.0)
+}
+
+fn finish(finish: &Finish, at: &TextureContext<'_>) -> (f32, f32) {
+    (at.float(finish.roughness).clamp(0.0, 1.0), at.float(finish.anisotropy).clamp(0.0, 0.99))
+}
+
+/// The roughness of the base's surface, blurred by a rough coat above [specification, "Coat": roughening].
+fn roughness(m: &OpenPbr, at: &TextureContext<'_>) -> f32 {
+    let (base, _) = finish(&m.specular_finish, at);
+    let (coat, _) = finish(&m.coat_finish, at);
+    let blurred = (base.powi(4) + 2.0 * coat.powi(4)).min(1.0).powf(0.25);
+    base + (blurred - base) * m.coat.weight_at(at)
+}
+
+fn fuzz(m: &OpenPbr, at: &MaterialContext<'_>, light: &mut Light, out: &mut Bsdf) {
+    let weight = m.fuzz.weight_at(&at.texture);
+    if weight > 0.0 {
+        let roughness = at.texture.float(m.fuzz_roughness);
+        out.push(
+            SheenLobe::new(m.fuzz.color_at(&at.texture), roughness),
+            light.weight * weight,
+            at.frame,
+            at.frame.n,
+        );
+        let wo = at.frame.to_local(at.wo);
+        let taken = SheenLobe::new(Spectrum::ONE, roughness).albedo(wo)[0];
+        light.weight *= 1.0 - weight * taken;
+    }
+}
+
+/// Adds the coat's reflection; gives how much of the base is coated.
+fn coat(m: &OpenPbr, at: &MaterialContext<'_>, cos: f32, light: &mut Light, out: &mut Bsdf) -> f32 {
+    let weight = m.coat.weight_at(&at.texture);
+    if weight == 0.0 {
+        return 0.0;
+    }
+    let (roughness, anisotropy) = finish(&m.coat_finish, &at.texture);
+    let surface = facets(roughness, anisotropy);
+    let glass = Glass { eta: m.coat_ior, reflectance: light.tint, transmittance: Spectrum::ONE, film: None };
+    out.push(GlossLobe { glass, surface }, light.weight * weight, at.frame, at.frame.n);
+    let taken = match surface {
+        Some(surface) => m.coat_gloss.at(&surface, cos),
+        None => fresnel::dielectric(cos, m.coat_ior).reflectance,
+    };
+    // Absorption on the way in and out, both as long as the viewer's.
+    let sin2 = (1.0 - cos * cos) / (m.coat_ior * m.coat_ior);
+    let passages = 1.0 / (1.0 - sin2).max(0.01).sqrt();
+    let color = m.coat.color_at(&at.texture).map(|c| c.powf(passages));
+    light.weight *= 1.0 - weight * taken;
+    light.tint *= Spectrum::ONE.lerp(color, weight);
+    weight
+}
+
+/// How much a coat deepens a base of some albedo by reflecting its light back [specification, "Coat": darkening].
+fn darkening(m: &OpenPbr, at: &TextureContext<'_>, cos: f32, albedo: Spectrum, is_matte: bool) -> Spectrum {
+    let weight = m.coat.weight_at(at) * at.float(m.coat_darkening).clamp(0.0, 1.0);
+    if weight == 0.0 {
+        return Spectrum::ONE;
+    }
+    let diffuse = 1.0 - (1.0 - fresnel::diffuse_reflectance(m.coat_ior)) / (m.coat_ior * m.coat_ior);
+    let mirror = fresnel::dielectric(cos, m.coat_ior).reflectance;
+    let blur = if is_matte { 1.0 } else { roughness(m, at) };
+    let kept = mirror + (diffuse - mirror) * blur;
+    let deepened = Spectrum::splat(1.0 - kept) / (Spectrum::ONE - albedo * kept);
+    Spectrum::ONE.lerp(deepened, weight)
+}
+
+fn film(m: &OpenPbr, at: &TextureContext<'_>) -> Option<Film> {
+    let weight = at.float(m.film_weight).clamp(0.0, 1.0);
+    // The specification gives micrometres.
+    let thickness = 1000.0 * at.float(m.film_thickness).max(0.0);
+    (weight > 0.0 && thickness > 0.0).then_some(Film { eta: m.film_ior, thickness, weight })
+}
+
+fn base(m: &OpenPbr, at: &MaterialContext<'_>, cos: f32, light: &Light, coated: f32, out: &mut Bsdf) {
+    let texture = &at.texture;
+    let (metal, glass) = (metalness(m, texture), m.transmission.weight_at(texture));
+    let roughness = roughness(m, texture);
+    let share = |share: f32| Light { weight: light.weight * share, tint: light.tint };
+    if metal > 0.0 {
+        metallic(m, at, cos, &share(metal), roughness, out);
+    }
+    if metal < 1.0 && glass > 0.0 {
+        translucent(m, at, &share((1.0 - metal) * glass), roughness, out);
+    }
+    if metal < 1.0 && glass < 1.0 {
+        opaque(m, at, cos, &share((1.0 - metal) * (1.0 - glass)), (roughness, coated), out);
+    }
+}
+
+fn metallic(m: &OpenPbr, at: &MaterialContext<'_>, cos: f32, light: &Light, roughness: f32, out: &mut Bsdf) {
+    let texture = &at.texture;
+    let f0 = m.base.color_at(texture) * m.base.weight_at(texture);
+    let edge = m.specular.color_at(texture);
+    let tint = light.tint * m.specular.weight_at(texture) * darkening(m, texture, cos, f0, false);
+    let metal = Metal { response: Response::Tinted([f0, edge]), tint, film: film(m, texture) };
+    let (_, anisotropy) = finish(&m.specular_finish, texture);
+    match facets(roughness, anisotropy) {
+        Some(surface) => out.push(RoughConductorLobe { metal, surface }, light.weight, at.frame, at.frame.n),
+        None => out.push(ConductorLobe { metal }, light.weight, at.frame, at.frame.n),
+    }
+}
+
+/// The dielectric surface of the base.
+fn surface(m: &OpenPbr, at: &TextureContext<'_>, tint: Spectrum) -> Glass {
+    Glass {
+        eta: modulated(m.specular_ior, m.specular.weight_at(at)),
+        reflectance: tint * m.specular.color_at(at),
+        transmittance: tint * m.transmission.color_at(at),
+        film: film(m, at),
+    }
+}
+
+fn translucent(m: &OpenPbr, at: &MaterialContext<'_>, light: &Light, roughness: f32, out: &mut Bsdf) {
+    let glass = surface(m, &at.texture, light.tint);
+    let (_, anisotropy) = finish(&m.specular_finish, &at.texture);
+    let (weight, frame, n) = (light.weight, at.frame, at.frame.n);
+    match facets(roughness, anisotropy) {
+        _ if m.is_thin_walled => out.push(ThinDielectricLobe { glass }, weight, frame, n),
+        Some(surface) => out.push(RoughDielectricLobe { glass, surface }, weight, frame, n),
+        None => out.push(DielectricLobe { glass }, weight, frame, n),
+    }
+}
+
+/// The glossy matte base: what the gloss leaves is scattered below it.
+fn opaque(
+    m: &OpenPbr,
+    at: &MaterialContext<'_>,
+    cos: f32,
+    light: &Light,
+    (roughness, coated): (f32, f32),
+    out: &mut Bsdf,
+) {
+    let texture = &at.texture;
+    let glass = surface(m, texture, light.tint);
+    let (_, anisotropy) = finish(&m.specular_finish, texture);
+    let surface = facets(roughness, anisotropy);
+    out.push(GlossLobe { glass, surface }, light.weight, at.frame, at.frame.n);
+    let taken = match surface {
+        Some(surface) => m.gloss.at(&surface, cos) * m.specular.weight_at(texture),
+        None => fresnel::dielectric(cos, glass.eta).reflectance,
+    };
+    let matte = m.base.color_at(texture) * m.base.weight_at(texture);
+    let color = matte.lerp(m.subsurface.color_at(texture), m.subsurface.weight_at(texture));
+    let deepened = if coated > 0.0 { darkening(m, texture, cos, color, true) } else { Spectrum::ONE };
+    let lobe = RoughDiffuseLobe {
+        reflectance: color * deepened * light.tint,
+        roughness: texture.float(m.diffuse_roughness).clamp(0.0, 1.0),
+    };
+    out.push(lobe, light.weight * (1.0 - taken).max(0.0), at.frame, at.frame.n);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_weight_of_gloss_scales_its_reflectance() {
+        for weight in [0.25_f32, 0.5, 1.0] {
+            let f0 = |ior: f32| ((ior - 1.0) / (ior + 1.0)).powi(2);
+            assert!((f0(modulated(1.5, weight)) - weight * f0(1.5)).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn facets_keep_their_mean_roughness() {
+        let surface = facets(0.6, 0.5).unwrap();
+        let mean = (0.5 * (surface.alpha_u.powi(2) + surface.alpha_v.powi(2))).sqrt();
+        assert!((mean - 0.36).abs() < 1e-4, "{surface:?}");
+        assert!(facets(0.0, 0.0).is_none());
+    }
+}
