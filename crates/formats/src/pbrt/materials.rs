@@ -320,7 +320,7 @@ impl Reader<'_, '_> {
             }
         };
         params.push("reflectance", reflectance, at);
-        let eta = if given.has("eta") { self.eta(given, "eta")? } else { 1.33 };
+        let eta = if given.get("eta").is_some() { self.eta(given, "eta")? } else { 1.33 };
         params.push("int_ior", Value::Float(eta), at);
         params.push("ext_ior", Value::Float(1.0), at);
         let [u, v] = self.alphas(given, "", 0.0)?;
