@@ -148,7 +148,7 @@ fn read_and_compile(
     let load_seconds = start.elapsed().as_secs_f64();
 
     let film = Film::of(&desc, &limits)?;
-    let estimate = MemoryEstimate::new(&desc, film.crop.width, film.crop.height);
+    let estimate = MemoryEstimate::new(&desc, film.crop.width, film.crop.height, &limits);
     check_memory(&estimate, args.limits.memory_limit)?;
 
     let start = Instant::now();

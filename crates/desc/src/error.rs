@@ -132,7 +132,9 @@ impl SceneError {
                     None => Some(format!("known: {}", known.join(", "))),
                 }
             }
-            Self::Limit { .. } => Some("limits guard against broken or hostile files".to_owned()),
+            Self::Limit { .. } => {
+                Some("limits guard against broken or hostile files; each can be raised".to_owned())
+            }
             _ => None,
         }
     }

@@ -11,7 +11,7 @@ use aureole_spectrum::Spectrum;
 /// Units per one: values are kept to 2⁻⁶⁴.
 const UNITS: f64 = 18_446_744_073_709_551_616.0;
 /// Samples beyond this are counted as broken: a million of them fit into a sum.
-const LARGEST: f32 = 1e12;
+pub(crate) const LARGEST: f32 = 1e12;
 
 /// An exact sum of numbers of magnitude up to 10¹², with a resolution of 2⁻⁶⁴.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,22 +6,22 @@
 
 use std::path::Path;
 
-use aureole_desc::{Family, Mesh, SceneDesc, Value};
-use aureole_image::probe_image;
+use aureole_desc::{Family, Limits, Mesh, SceneDesc, Value};
+use aureole_image::{Probe, probe_image};
 use rustc_hash::FxHashSet;
 
 use crate::film::FilmTile;
 
 /// The program itself, its tables and the state of its workers.
-const BASE: u64 = 24 << 20;
-/// Bytes of a triangle in the accelerator, once it is built (measured over meshes of 10⁵ to 10⁷ triangles).
-const ACCEL_TRIANGLE: u64 = 76;
+const BASE: u64 = 12 << 20;
+/// Bytes of a triangle in the accelerator, once it is built (measured over meshes of 10⁵ to 5·10⁶ triangles).
+const ACCEL_TRIANGLE: u64 = 62;
 /// Further bytes of a triangle while it is built: boxes, order, the binary tree before it is widened (measured likewise).
-const BUILD_TRIANGLE: u64 = 150;
+const BUILD_TRIANGLE: u64 = 60;
 /// Bytes of any other shape or instance, with its boxes.
 const OTHER_SHAPE: u64 = 1024;
-/// An image is turned into the bytes of its file: floats, then what the encoder makes of them.
-const OUTPUT_PIXEL: u64 = 3 * 4 + 3 * 4;
+/// Bytes of a pixel of the finished image: three floats.
+const OUTPUT_PIXEL: u64 = 3 * 4;
 
 /// Bytes that a render will need, by what needs them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,8 +41,9 @@ pub struct MemoryEstimate {
 }
 
 impl MemoryEstimate {
-    /// Estimates the memory of a description, once it is built and rendered.
-    pub fn new(desc: &SceneDesc, width: u32, height: u32) -> Self {
+    /// Estimates the memory of a description, once it is built and an image of some size is rendered. Pictures beyond the
+    /// limits are not counted: they will be refused.
+    pub fn new(desc: &SceneDesc, width: u32, height: u32, limits: &Limits) -> Self {
         let pixels = u64::from(width) * u64::from(height);
         let film = pixels * (FilmTile::BYTES_PER_PIXEL as u64 + OUTPUT_PIXEL);
         let mut estimate = Self { film, ..Self::default() };
@@ -69,7 +70,10 @@ impl MemoryEstimate {
                     Value::Path(path) if pictures.insert(path) => {
                         // Environment maps keep the distribution that they are sampled by beside the picture.
                         let copies = if node.family == Family::Light { 2 } else { 1 };
-                        estimate.textures += copies * probe_image(path).map_or(0, |probe| probe.bytes());
+                        let within =
+                            |probe: &Probe| probe.width.saturating_mul(probe.height) <= limits.max_pixels;
+                        let picture = probe_image(path).filter(within);
+                        estimate.textures += copies * picture.map_or(0, |probe| probe.bytes());
                     }
                     _ => {}
                 }
@@ -111,7 +115,7 @@ mod tests {
             let params = Params::new().with("mesh", Value::Mesh(mesh.clone()));
             desc.add(Node::new(Family::Shape, "mesh", params, Span::NONE));
         }
-        let estimate = MemoryEstimate::new(&desc, 100, 50);
+        let estimate = MemoryEstimate::new(&desc, 100, 50, &Limits::default());
         assert_eq!(estimate.description, 36_000);
         assert_eq!(estimate.acceleration, 4000 * ACCEL_TRIANGLE);
         assert!(estimate.film > 5000 * 64);

@@ -7,6 +7,7 @@ use aureole_math::{Normal3, Point2, Point3, Vector3};
 use aureole_scene::{Elements, Interaction, Scene};
 use aureole_spectrum::Spectrum;
 
+use crate::film::LARGEST;
 use crate::integrator::{self, Batch, PathStart};
 use crate::render::{RenderOptions, SampleId, start_path};
 
@@ -117,9 +118,10 @@ impl Vertex {
 }
 
 impl Event {
-    /// Whether all its numbers are finite.
+    /// Whether all its numbers are finite, and none so large that the film leaves it out.
     pub fn is_finite(&self) -> bool {
         let vector = |v: Vector3| v.is_finite();
+        let fits = |s: &Spectrum| s.rgb().iter().all(|c| c.abs() <= LARGEST);
         match self {
             Self::Start { origin, direction, filter_weight } => {
                 origin.is_finite() && vector(*direction) && filter_weight.is_finite()
@@ -129,9 +131,9 @@ impl Event {
                 vertex.p.is_finite() && normals && vertex.throughput.is_finite()
             }
             Self::Escape { direction } => vector(*direction),
-            Self::Found { contribution } => contribution.is_finite(),
+            Self::Found { contribution } => fits(contribution),
             // The density of a light that is a mere point is no number to divide by.
-            Self::Light { wi, contribution, .. } => vector(*wi) && contribution.is_finite(),
+            Self::Light { wi, contribution, .. } => vector(*wi) && fits(contribution),
             Self::Scatter { wi, weight, .. } => vector(*wi) && weight.is_finite(),
             Self::Roulette { survival, .. } => survival.is_finite(),
             Self::Shadow { .. } | Self::Absorb => true,

@@ -58,6 +58,16 @@ fn memory_is_asked_for_beforehand() {
 }
 
 #[test]
+fn the_prediction_is_near_what_is_taken() {
+    let program = Program::new();
+    let predicted = program.ok("info gallery:cornell-box --json --resolution 1000x1000").json();
+    let taken = program.ok("render -o a.exr --resolution 1000x1000 --spp 1 --stats json").json();
+    let number = |object: &serde_json::Value, name: &str| object[name].as_f64().expect("a number");
+    let ratio = number(&predicted, "predicted_memory_bytes") / number(&taken, "peak_memory_bytes");
+    assert!((0.85..1.5).contains(&ratio), "{ratio}");
+}
+
+#[test]
 fn one_sample_in_slow_motion() {
     let program = Program::with_ball("");
     let text = program.ok("render ball.xml --debug-pixel 20,15,3").text();

@@ -61,8 +61,15 @@ pub fn decode(bytes: &[u8], limits: &Limits) -> Result<Grid, MeshError> {
         return Err(MeshError::content(format!("{x}×{y}×{z}×{channels} values expected, found {found}")));
     }
     let bounds = [6, 9].map(|first| [0, 1, 2].map(|axis| f32::from_le_bytes(word(first + axis))));
-    let values =
+    let values: Arc<[f32]> =
         body.chunks_exact(4).take(count).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    if let Some(i) = values.iter().position(|value| !value.is_finite()) {
+        return Err(MeshError::content(format!(
+            "value {} of {count} is {}, not a finite number",
+            i + 1,
+            values[i]
+        )));
+    }
     Ok(Grid { resolution: [x, y, z].map(|n| n as usize), channels: channels as usize, bounds, values })
 }
 
