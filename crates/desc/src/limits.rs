@@ -52,7 +52,7 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             max_file_bytes: 4 << 30,
-            max_files: 1 << 16,
+            max_files: 1 << 14,
             max_include_depth: 64,
             max_nesting: 256,
             max_params: 4096,

@@ -46,6 +46,8 @@ pub enum Event {
         /// What it adds to the sample unless something is in between.
         contribution: Spectrum,
     },
+    /// No light is drawn, or one that cannot be seen or reflected from here.
+    Unlit,
     /// The shadow ray to the drawn light.
     Shadow {
         /// Whether something is in between.
@@ -136,7 +138,7 @@ impl Event {
             Self::Light { wi, contribution, .. } => vector(*wi) && fits(contribution),
             Self::Scatter { wi, weight, .. } => vector(*wi) && weight.is_finite(),
             Self::Roulette { survival, .. } => survival.is_finite(),
-            Self::Shadow { .. } | Self::Absorb => true,
+            Self::Unlit | Self::Shadow { .. } | Self::Absorb => true,
         }
     }
 }

@@ -79,6 +79,7 @@ impl<'a> Teller<'a> {
                 xyz(wi.to_array()),
                 rgb(contribution.rgb())
             ),
+            Event::Unlit => "  light      none that adds anything".to_owned(),
             Event::Shadow { blocked: true } => "  shadow     blocked: adds nothing".to_owned(),
             Event::Shadow { blocked: false } => "  shadow     free: adds it".to_owned(),
             Event::Scatter { wi, pdf_omega, weight, is_delta, is_transmission } => {

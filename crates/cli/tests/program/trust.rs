@@ -76,13 +76,17 @@ fn one_sample_in_slow_motion() {
         "vertex 1",
         "sphere (ball.xml:16:5) of diffuse (ball.xml:18:9)",
         "lobes      Diffuse",
-        "constant",
         "escape",
         "radiance",
     ] {
         assert!(text.contains(words), "no `{words}` in\n{text}");
     }
     assert_eq!(text, program.ok("render ball.xml --debug-pixel 20,15,3 --threads 2").text());
+    let others: String =
+        (0..4).map(|i| program.ok(&format!("render ball.xml --debug-pixel 20,15,{i}")).text()).collect();
+    for words in ["light      constant (ball.xml:20:5), towards", "shadow     free", "light      none"] {
+        assert!(others.contains(words), "no `{words}` in\n{others}");
+    }
     assert!(!program.path().join("ball.png").exists(), "nothing is rendered");
     program.fails("render ball.xml --debug-pixel 40,0", 2, &["40,0", "40 x 30"]);
     program.fails("render ball.xml --debug-pixel 4", 2, &["12,40"]);
