@@ -177,6 +177,8 @@ impl Path {
                 watch.hear(|| light.event(contribution));
                 state.shadow_rays.push(light.ray);
                 state.pending.push(Pending { path: segment.path, contribution });
+            } else {
+                watch.hear(|| Event::Unlit);
             }
         }
         let lobe = draw_if(bsdf.has_choice(), LOBE);
