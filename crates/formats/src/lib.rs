@@ -15,7 +15,7 @@
 
 #![forbid(unsafe_code)]
 
-mod brdf;
+pub mod brdf;
 pub mod file;
 mod format;
 mod gallery;

@@ -35,6 +35,7 @@ pub fn of(target: &str) -> Vec<Sample> {
         "mtl" => vec![sample("library", include_bytes!("../samples/library.mtl"))],
         "serialized" => vec![sample("version-3", &serialized(3)), sample("version-4", &serialized(4))],
         "vol" => vec![sample("ball", &vol())],
+        "brdf" => vec![sample("rgl", &rgl()), sample("merl", &merl())],
         "gzip" => {
             vec![sample("scene", &gzip(GALLERY[0].text.as_bytes())), sample("plain", b"no gzip at all")]
         }
@@ -138,6 +139,43 @@ fn vol() -> Vec<u8> {
         file.extend(((x * x + y * y + z * z).sqrt() - 0.4).to_le_bytes());
     }
     file
+}
+
+/// A measured reflectance as RGL writes it: fields of floats in a tensor file.
+fn rgl() -> Vec<u8> {
+    const FIELDS: [(&str, &[u64]); 7] = [
+        ("phi_i", &[1]),
+        ("theta_i", &[2]),
+        ("ndf", &[2, 2]),
+        ("sigma", &[2, 2]),
+        ("vndf", &[1, 2, 2, 2]),
+        ("luminance", &[1, 2, 2, 2]),
+        ("rgb", &[1, 2, 3, 2, 2]),
+    ];
+    let header_size = |(name, shape): &(&str, &[u64])| 2 + name.len() + 2 + 1 + 8 + 8 * shape.len();
+    let mut file = b"tensor_file\0\x01\0".to_vec();
+    file.extend((FIELDS.len() as u32).to_le_bytes());
+    let mut offset = file.len() + FIELDS.iter().map(header_size).sum::<usize>();
+    let mut data: Vec<u8> = Vec::new();
+    for (name, shape) in FIELDS {
+        file.extend((name.len() as u16).to_le_bytes());
+        file.extend(name.bytes());
+        file.extend((shape.len() as u16).to_le_bytes());
+        file.push(10); // 32-bit floats
+        file.extend((offset as u64).to_le_bytes());
+        file.extend(shape.iter().flat_map(|n| n.to_le_bytes()));
+        let count = shape.iter().product::<u64>() as usize;
+        data.extend((0..count).flat_map(|i| (0.2 + 0.7 * i as f32 / count as f32).to_le_bytes()));
+        offset += 4 * count;
+    }
+    file.extend(data);
+    file
+}
+
+/// A measured reflectance as MERL writes it, with two steps of each angle.
+fn merl() -> Vec<u8> {
+    let size = [2i32; 3].iter().flat_map(|n| n.to_le_bytes());
+    size.chain((0..24).flat_map(|i| f64::from(100 + i).to_le_bytes())).collect()
 }
 
 /// A picture in every format that can be read.

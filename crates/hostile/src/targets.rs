@@ -5,9 +5,11 @@
 
 use std::path::Path;
 
-use aureole::desc::{Limits, Mesh, Report, SceneDesc, SceneError, Sources, Span};
+use aureole::desc::{
+    Family, Limits, Mesh, Node, Params, Report, SceneDesc, SceneError, Sources, Span, Value,
+};
 use aureole::formats::mesh::{MeshError, obj, ply, serialized, vol};
-use aureole::formats::{LoadOptions, file, load_text};
+use aureole::formats::{LoadOptions, brdf, file, load_text};
 use aureole::image::{Encoding, ImageLimits, decode_bitmap, decode_image};
 use aureole::render::{RenderOptions, Silent, render};
 use aureole::scene::{CompileOptions, Scene, compile};
@@ -41,6 +43,7 @@ pub const ALL: &[Target] = &[
     Target { name: "mtl", run: |bytes| drop(obj::parse_materials(&String::from_utf8_lossy(bytes))) },
     Target { name: "serialized", run: check_serialized },
     Target { name: "vol", run: check_vol },
+    Target { name: "brdf", run: check_brdf },
     Target { name: "gzip", run: check_gzip },
     Target { name: "image", run: check_image },
     Target { name: "pbrt_render", run: |bytes| check_scene("pbrt", bytes) },
@@ -150,6 +153,19 @@ fn check_vol(bytes: &[u8]) {
     if let Ok(grid) = vol::decode(bytes, &LIMITS) {
         assert_eq!(grid.values.len(), grid.resolution.iter().product::<usize>() * grid.channels);
     }
+}
+
+/// A measured reflectance must also survive being rendered.
+fn check_brdf(bytes: &[u8]) {
+    let Ok((kind, params)) = brdf::decode(bytes, &LIMITS) else { return };
+    let mut desc = SceneDesc::default();
+    let bsdf = desc.add(Node::new(Family::Bsdf, kind, params, Span::NONE));
+    let params = Params::new().with("bsdf", Value::Node(bsdf));
+    let ball = desc.add(Node::new(Family::Shape, "sphere", params, Span::NONE));
+    let sky = desc.add(Node::new(Family::Light, "constant", Params::new(), Span::NONE));
+    desc.shapes.push(ball);
+    desc.lights.push(sky);
+    first_samples(desc);
 }
 
 fn check_gzip(bytes: &[u8]) {

@@ -19,14 +19,21 @@ use tensor::Tensor;
 ///
 /// # Errors
 /// A file that cannot be read, or is neither.
-pub(crate) fn read(path: &Path, limits: &Limits, at: Span) -> Result<(&'static str, Params), SceneError> {
+pub fn read(path: &Path, limits: &Limits, at: Span) -> Result<(&'static str, Params), SceneError> {
     let bytes = file::read_bytes(path, limits, at)?;
-    let found = if tensor::is_tensor_file(&bytes) {
-        tensor::decode(&bytes, limits).and_then(|tensors| Ok(("measured", rgl(&tensors)?)))
+    decode(&bytes, limits).map_err(|error| error.in_file(path, at))
+}
+
+/// Reads a measured reflectance from memory.
+///
+/// # Errors
+/// As [`read`].
+pub fn decode(bytes: &[u8], limits: &Limits) -> Result<(&'static str, Params), MeshError> {
+    if tensor::is_tensor_file(bytes) {
+        tensor::decode(bytes, limits).and_then(|tensors| Ok(("measured", rgl(&tensors)?)))
     } else {
-        merl::decode(&bytes, limits).map(|params| ("merl", params))
-    };
-    found.map_err(|error| error.in_file(path, at))
+        merl::decode(bytes, limits).map(|params| ("merl", params))
+    }
 }
 
 /// The parameters that RGL's fields stand for.

@@ -52,6 +52,7 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Vec<(String, Tenso
     }
     let count = reader.number(4)?;
     let mut fields = Vec::new();
+    let mut used = 0;
     for _ in 0..count {
         let length = reader.number(2)? as usize;
         let name = String::from_utf8_lossy(reader.take(length)?).into_owned();
@@ -70,6 +71,11 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Vec<(String, Tenso
         let data = usize::try_from(offset).ok().and_then(|offset| bytes.get(offset..));
         let data = data.and_then(|data| data.get(..total.checked_mul(size)?));
         let data = data.ok_or_else(|| MeshError::content(format!("the field `{name}` is cut off")))?;
+        // Fields that share their bytes could make any amount of memory of a small file.
+        used += data.len();
+        if used > bytes.len() {
+            return Err(MeshError::content("the fields overlap"));
+        }
         fields.push((name, Tensor { shape, values: floats(data, size) }));
     }
     Ok(fields)
@@ -110,6 +116,15 @@ mod tests {
         assert_eq!(fields[0].0, "ndf");
         assert_eq!(fields[0].1.shape, [2, 3]);
         assert_eq!(&fields[0].1.values[..], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+    }
+
+    #[test]
+    fn fields_that_share_their_bytes_are_refused() {
+        let once = example();
+        let (header, data) = once.split_at(once.len() - 24);
+        let field = &header[MAGIC.len() + 6..];
+        let bytes = [&header[..MAGIC.len() + 2], &9_u32.to_le_bytes()[..], &field.repeat(9), data].concat();
+        assert_eq!(decode(&bytes, &Limits::default()).unwrap_err().to_string(), "the fields overlap");
     }
 
     #[test]
