@@ -55,7 +55,7 @@ impl Default for Limits {
             max_files: 1 << 14,
             max_include_depth: 64,
             max_nesting: 256,
-            max_params: 4096,
+            max_params: 256,
             max_evaluations: 1 << 14,
             max_mesh_elements: 1 << 28,
             max_pixels: 1 << 28,

@@ -113,6 +113,16 @@ impl SearchPath {
         Self { folders: vec![file.parent().unwrap_or(Path::new("")).to_owned()] }
     }
 
+    /// How many folders there are.
+    pub fn len(&self) -> usize {
+        self.folders.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.folders.is_empty()
+    }
+
     /// Adds a folder before all others.
     pub fn push_front(&mut self, folder: PathBuf) {
         self.folders.retain(|known| *known != folder);

@@ -187,13 +187,36 @@ fn floods_of_mistakes_take_no_longer_than_files_of_their_size() {
 
     let unknown: String = (0..100_000).map(|i| format!("\"float p{i}\" 1\n")).collect();
     program.write("flood.pbrt", &format!("WorldBegin\nShape \"sphere\"\n{unknown}"));
-    fails_soon(&program, "render flood.pbrt", 5, &["parameters", "flood.pbrt:4099:"]);
+    fails_soon(&program, "render flood.pbrt", 5, &["parameters", "flood.pbrt:259:"]);
     let unknown: String = (0..100_000).map(|i| format!("<float name=\"p{i}\" value=\"1\"/>\n")).collect();
     program.write(
         "flood.xml",
         &format!("<scene version=\"3.0.0\"><shape type=\"sphere\">\n{unknown}</shape></scene>"),
     );
-    fails_soon(&program, "render flood.xml", 5, &["parameters", "flood.xml:4098:"]);
+    fails_soon(&program, "render flood.xml", 5, &["parameters", "flood.xml:258:"]);
+}
+
+#[test]
+fn floods_of_what_is_looked_up_are_refused() {
+    let program = Program::new();
+    let flood = |name: &str, line: fn(usize) -> String, rest: &str| {
+        let lines: String = (0..5000).map(line).collect();
+        program.write(name, &format!("<scene version=\"3.0.0\">{lines}{rest}</scene>"));
+    };
+    flood("defaults.xml", |i| format!("<default name=\"a{i}\" value=\"1\"/>\n"), "");
+    fails_soon(&program, "render defaults.xml", 5, &["parameters", "defaults.xml:257:"]);
+    flood("folders.xml", |i| format!("<path value=\"f{i}\"/>\n"), "");
+    fails_soon(&program, "render folders.xml", 5, &["search folders", "folders.xml:64:"]);
+    let ball = "<bsdf type=\"diffuse\" id=\"b0\"/><shape type=\"sphere\"><ref id=\"b5000\"/></shape>";
+    flood("aliases.xml", |i| format!("<alias id=\"b{i}\" as=\"b{}\"/>\n", i + 1), ball);
+    fails_soon(&program, "render aliases.xml", 3, &["unknown id `b5000`", "aliases.xml:5001:"]);
+
+    let defaults: String = (0..256).map(|i| format!(" \"float p{i}\" 1")).collect();
+    let blocks = "AttributeBegin\nShape \"sphere\"\nAttributeEnd\n".repeat(2000);
+    program.write("attributes.pbrt", &format!("WorldBegin\nAttribute \"shape\"{defaults}\n{blocks}"));
+    let start = Instant::now();
+    program.ok("render attributes.pbrt --spp 1 --resolution 8x8");
+    assert!(start.elapsed() < SOON, "{:?}", start.elapsed());
 }
 
 #[test]

@@ -95,7 +95,8 @@ fn floats(data: &[u8], size: usize) -> Arc<[f32]> {
 mod tests {
     use super::*;
 
-    fn example() -> Vec<u8> {
+    /// One field of two rows.
+    fn example(columns: u64) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
         bytes.extend([1, 0]);
         bytes.extend(1_u32.to_le_bytes());
@@ -105,14 +106,14 @@ mod tests {
         bytes.push(10);
         let offset = bytes.len() as u64 + 8 + 16;
         bytes.extend(offset.to_le_bytes());
-        bytes.extend([2_u64, 3].iter().flat_map(|n| n.to_le_bytes()));
-        bytes.extend((0..6).flat_map(|i| (i as f32).to_le_bytes()));
+        bytes.extend([2, columns].iter().flat_map(|n| n.to_le_bytes()));
+        bytes.extend((0..2 * columns).flat_map(|i| (i as f32).to_le_bytes()));
         bytes
     }
 
     #[test]
     fn fields_read() {
-        let fields = decode(&example(), &Limits::default()).unwrap();
+        let fields = decode(&example(3), &Limits::default()).unwrap();
         assert_eq!(fields[0].0, "ndf");
         assert_eq!(fields[0].1.shape, [2, 3]);
         assert_eq!(&fields[0].1.values[..], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
@@ -120,8 +121,8 @@ mod tests {
 
     #[test]
     fn fields_that_share_their_bytes_are_refused() {
-        let once = example();
-        let (header, data) = once.split_at(once.len() - 24);
+        let once = example(300);
+        let (header, data) = once.split_at(once.len() - 2400);
         let field = &header[MAGIC.len() + 6..];
         let bytes = [&header[..MAGIC.len() + 2], &9_u32.to_le_bytes()[..], &field.repeat(9), data].concat();
         assert_eq!(decode(&bytes, &Limits::default()).unwrap_err().to_string(), "the fields overlap");
@@ -129,7 +130,7 @@ mod tests {
 
     #[test]
     fn broken_files_are_refused() {
-        let whole = example();
+        let whole = example(3);
         for end in MAGIC.len()..whole.len() {
             assert!(decode(&whole[..end], &Limits::default()).is_err(), "{end}");
         }

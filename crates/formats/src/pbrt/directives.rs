@@ -1,5 +1,7 @@
 //! The directives: what changes the state, what nests, what includes.
 
+use std::rc::Rc;
+
 use aureole_desc::{Family, Params, SceneDesc, SceneError, SourceId, Span, Value, suggest};
 use aureole_math::{Point3, Transform, Vector3};
 
@@ -177,7 +179,7 @@ impl Reader<'_, '_> {
             "Attribute" => {
                 let params = params::parse(lexer, self.limits(), at)?;
                 let limits = *self.limits();
-                let defaults = self.state.defaults.entry(name).or_default();
+                let defaults = Rc::make_mut(&mut self.state.defaults).entry(name).or_default();
                 defaults.extend(params.into_list());
                 limits.check_params(defaults.len(), at)
             }

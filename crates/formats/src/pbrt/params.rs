@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use aureole_desc::{Limits, Report, SceneError, Span, Value, suggest};
 use aureole_spectrum::{SpectrumRole, SpectrumSource, Tabulated, blackbody, named_spectrum, spectrum_names};
+use rustc_hash::FxHashSet;
 
 use super::lexer::{Lexer, Token};
 use super::state::Reader;
@@ -137,12 +138,14 @@ impl ParamSet {
 
     /// Adds those that are not there yet.
     pub(super) fn extend(&mut self, others: &[PbrtParam]) {
-        for other in others {
-            if !self.list.iter().any(|p| p.name == other.name) {
-                // Defaults for all that follow are not missed by one of them.
-                self.list.push(PbrtParam { used: Cell::new(true), ..other.clone() });
-            }
-        }
+        let mut names: FxHashSet<&str> = self.list.iter().map(|p| p.name.as_str()).collect();
+        let new: Vec<PbrtParam> = others
+            .iter()
+            .filter(|other| names.insert(&other.name))
+            // Defaults for all that follow are not missed by one of them.
+            .map(|other| PbrtParam { used: Cell::new(true), ..other.clone() })
+            .collect();
+        self.list.extend(new);
     }
 
     pub(super) fn into_list(self) -> Vec<PbrtParam> {

@@ -1,6 +1,7 @@
 //! What a pbrt file builds up: the graphics state, named things, and the description.
 
 use std::path::PathBuf;
+use std::rc::Rc;
 
 use aureole_desc::{Family, Limits, Node, NodeId, Params, SceneDesc, SceneError, Span, Value};
 use aureole_math::Transform;
@@ -19,8 +20,8 @@ pub(super) struct GraphicsState {
     pub reverse_orientation: bool,
     pub material: Option<NodeId>,
     pub area_light: Option<ParamSet>,
-    /// Defaults that `Attribute` sets, by what they are for.
-    pub defaults: FxHashMap<String, Vec<PbrtParam>>,
+    /// Defaults that `Attribute` sets, by what they are for. They are shared by states until one changes them.
+    pub defaults: Rc<FxHashMap<String, Vec<PbrtParam>>>,
 }
 
 /// What `AttributeBegin`, `TransformBegin` and `ObjectBegin` leave to be ended.
@@ -77,7 +78,7 @@ impl<'a, 'c> Reader<'a, 'c> {
                 reverse_orientation: false,
                 material: None,
                 area_light: None,
-                defaults: FxHashMap::default(),
+                defaults: Rc::default(),
             },
             saved: Vec::new(),
             coordinate_systems: FxHashMap::default(),

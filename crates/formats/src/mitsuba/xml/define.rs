@@ -38,6 +38,11 @@ impl Defines {
         }
     }
 
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.list.len()
+    }
+
     /// Names that the user defined and the scene did not ask for.
     pub(super) fn unused(&self) -> Vec<String> {
         self.list.iter().filter(|define| !define.used).map(|define| define.name.clone()).collect()

@@ -78,6 +78,12 @@ impl Parser<'_, '_> {
             self.context.report.warn(message, element.value_span());
         }
         self.search.push_back(folder);
+        // Every file is looked for in each of them.
+        let (found, limit) = (self.search.len() as u64, self.context.options.limits.max_include_depth as u64);
+        let what = "the number of search folders".to_owned();
+        if found > limit {
+            return Err(SceneError::Limit { what, found, limit, at: element.span() });
+        }
         Ok(())
     }
 

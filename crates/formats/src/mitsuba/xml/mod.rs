@@ -214,7 +214,7 @@ impl Parser<'_, '_> {
     fn default(&mut self, element: &Element<'_>) -> Result<(), SceneError> {
         let (name, value) = (element.required("name")?, element.required("value")?);
         self.defines.set_default(name, value);
-        Ok(())
+        self.context.options.limits.check_params(self.defines.len(), element.span())
     }
 
     fn alias(&mut self, element: &Element<'_>) -> Result<(), SceneError> {
