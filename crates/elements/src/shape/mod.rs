@@ -5,6 +5,7 @@
 
 mod bilinear_mesh;
 mod cube;
+mod curve;
 mod custom;
 mod cylinder;
 mod disk;
@@ -14,7 +15,9 @@ mod quadric;
 mod rectangle;
 mod sdf_grid;
 mod sphere;
+mod spline;
 mod surface;
+mod tube;
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -23,6 +26,7 @@ use aureole_math::{Bounds3, Point2, Point3, Ray, Vector3};
 
 pub use bilinear_mesh::BilinearMesh;
 pub use cube::Cube;
+pub use curve::Curve;
 pub use custom::ShapeKind;
 pub use cylinder::Cylinder;
 pub use disk::Disk;
@@ -32,6 +36,7 @@ pub use rectangle::Rectangle;
 pub use sdf_grid::SdfGrid;
 pub use sphere::Sphere;
 pub use surface::{ShapeSample, SurfacePoint};
+pub use tube::Tube;
 
 /// Where a ray meets a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,6 +122,8 @@ registry! {
     cylinder::Cylinder as Cylinder = "cylinder",
     bilinear_mesh::BilinearMesh as BilinearMesh = "bilinear_mesh",
     sdf_grid::SdfGrid as SdfGrid = "sdf_grid",
+    curve::Curve as Curve = "curve",
+    tube::Tube as Tube = "tube",
 }
 
 impl Shape {

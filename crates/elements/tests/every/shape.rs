@@ -68,6 +68,27 @@ fn ball_grid() -> [(&'static str, Value); 2] {
     [("values", Floats(values.into())), ("resolution", Ints([N as i32; 3].into()))]
 }
 
+/// Control points of strips.
+fn strip() -> Value {
+    let Floats(points) = curve_points() else { return Value::Bool(false) };
+    Floats(points.chunks_exact(4).take(7).flat_map(|p| p[..3].to_vec()).collect())
+}
+
+/// Control points of tubes, with radii.
+fn curve_points() -> Value {
+    let points: [[f32; 4]; 8] = [
+        [-1.5, 0.0, 0.0, 0.15],
+        [-1.0, 0.6, 0.2, 0.25],
+        [-0.3, -0.4, 0.5, 0.2],
+        [0.4, 0.3, 0.1, 0.3],
+        [0.9, -0.2, -0.4, 0.15],
+        [1.4, 0.3, 0.0, 0.2],
+        [1.9, 0.9, 0.3, 0.2],
+        [2.5, 0.8, 0.7, 0.1],
+    ];
+    Floats(points.concat().into())
+}
+
 /// Shapes of every kind, each also mirrored and stretched.
 pub(crate) fn examples(world: &mut World) -> Vec<Example> {
     let patch = Floats([-1.0, -1.0, 0.0, 1.0, -1.0, 0.4, -1.0, 1.0, 0.3, 1.0, 1.2, -0.3].into());
@@ -96,13 +117,39 @@ pub(crate) fn examples(world: &mut World) -> Vec<Example> {
             params([("mesh", Value::Mesh(Arc::new(blob()))), ("face_normals", Value::Bool(true))])
         }),
         ("grid", "sdf_grid", params(ball_grid())),
+        ("tube", "tube", params([("points", curve_points())])),
+        ("tubes, Catmull-Rom", "tube", {
+            params([
+                ("points", curve_points()),
+                ("basis", word("catmull_rom")),
+                ("counts", Ints([4, 4].into())),
+            ])
+        }),
+        (
+            "flat strip",
+            "curve",
+            params([("points", strip()), ("width0", Float(0.1)), ("width1", Float(0.2))]),
+        ),
+        ("round strip", "curve", {
+            params([("points", strip()), ("width0", Float(0.2)), ("style", word("cylinder"))])
+                .with("basis", word("bspline"))
+                .with("width1", Float(0.1))
+        }),
+        ("ribbon", "curve", {
+            params([("points", strip()), ("style", word("ribbon")), ("width0", Float(0.3))])
+                .with("width1", Float(0.2))
+                .with("normals", Floats([0.0, 0.2, 1.0, 0.3, 0.0, 1.0, -0.2, 0.4, 1.0].into()))
+        }),
+        ("chains", "tube", {
+            params([("points", curve_points()), ("basis", word("linear")), ("counts", Ints([5, 3].into()))])
+        }),
     ];
     let mut examples = Vec::new();
     for (label, kind, params) in list {
         for place in [moved(), stretched()] {
             let mut params = params.clone().with("world_from_object", Value::Transform(place));
-            if kind == "mesh" {
-                // Only shining meshes prepare to be sampled; the light itself is not looked at.
+            if kind == "mesh" || kind == "tube" {
+                // Only shining meshes and tubes prepare to be sampled; the light itself is not looked at.
                 let light = world.add(Family::Light, "area", []);
                 params = params.with("emission", light);
             }
@@ -215,7 +262,9 @@ fn hits_lie_on_the_surface() {
 fn derivatives_follow_the_surface() {
     let mut world = World::default();
     let mut rng = Pcg32::new(2);
-    for example in examples(&mut world).into_iter().filter(|example| example.label != "grid") {
+    // A grid has no parameters; strips turn to the ray, and pretend to be round.
+    let without = ["grid", "round strip"];
+    for example in examples(&mut world).into_iter().filter(|example| !without.contains(&example.label)) {
         let shape = &world.shapes[example.shape];
         let (center, radius) = ball_around(&shape.bounds());
         let (mut tested, mut wrong) = (0, 0);

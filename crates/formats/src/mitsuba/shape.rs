@@ -10,7 +10,7 @@ use rustc_hash::FxHashSet;
 use super::scope::Scope;
 use super::translate::{MeshKey, Orientation, Translator};
 use super::tree::{ObjectId, Tag};
-use crate::mesh::{add_smooth_normals, obj, ply, serialized, vol};
+use crate::mesh::{add_smooth_normals, curves, obj, ply, serialized, vol};
 
 /// Mitsuba's plugins and Aureole's words for them. Not all of the latter can be rendered yet.
 const KINDS: &[(&str, &str)] = &[
@@ -26,8 +26,8 @@ const KINDS: &[(&str, &str)] = &[
     ("instance", "instance"),
     ("merge", "merge"),
     ("sdfgrid", "sdf_grid"),
-    ("bsplinecurve", "bspline_curve"),
-    ("linearcurve", "linear_curve"),
+    ("bsplinecurve", "tube"),
+    ("linearcurve", "tube"),
     ("ellipsoids", "ellipsoids"),
     ("ellipsoidsmesh", "ellipsoids"),
 ];
@@ -90,7 +90,8 @@ pub(super) fn translate<'a>(
         "mesh" => mesh(t, &mut scope)?,
         "sphere" => turn_if_mirrored(&mut scope)?,
         "sdf_grid" => sdf_grid(t, &mut scope)?,
-        "bspline_curve" | "linear_curve" | "ellipsoids" if scope.has("filename") => t.put_path(&mut scope)?,
+        "tube" => tube(t, &mut scope)?,
+        "ellipsoids" if scope.has("filename") => t.put_path(&mut scope)?,
         _ => {}
     }
     surface(t, &mut scope)?;
@@ -243,5 +244,17 @@ fn sdf_grid(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(),
     }
     scope.out.push("values", Value::Floats(grid.values), at);
     scope.out.push("resolution", Value::Ints(grid.resolution.map(|n| n as i32).as_slice().into()), at);
+    Ok(())
+}
+
+/// Curves with a radius at each control point. Rays never meet them from inside.
+fn tube(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(), SceneError> {
+    let (path, at) = t.path(scope, "filename")?;
+    let (basis, least) = if scope.object.plugin == "linearcurve" { ("linear", 2) } else { ("bspline", 4) };
+    let curves = curves::read(&path, least, &t.context.options.limits, at)?;
+    scope.out.push("points", Value::Floats(curves.points), at);
+    scope.out.push("counts", Value::Ints(curves.counts), at);
+    scope.out.push("basis", Value::String(basis.to_owned()), scope.span());
+    scope.out.push("cull_back", Value::Bool(true), scope.span());
     Ok(())
 }

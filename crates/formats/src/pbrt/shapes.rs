@@ -8,9 +8,10 @@ use aureole_math::{Transform, Vector3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use super::curve;
 use super::params::ParamSet;
 use super::state::Reader;
-use crate::mesh::ply;
+use crate::mesh::{loop_subdivision, ply};
 
 const KINDS: &[&str] =
     &["bilinearmesh", "curve", "cylinder", "disk", "loopsubdiv", "plymesh", "sphere", "trianglemesh"];
@@ -27,10 +28,8 @@ impl Reader<'_, '_> {
             "sphere" => (sphere(given, &mut params)?, ctm),
             "disk" => (disk(given, &mut params)?, ctm),
             "cylinder" => (cylinder(given, &mut params)?, ctm),
-            "curve" | "loopsubdiv" => {
-                self.warn(format!("shape `{kind}` is not rendered yet and left out"), at);
-                return Ok(());
-            }
+            "curve" => (curve::translate(given, &mut params)?, ctm),
+            "loopsubdiv" => (self.loop_subdivision(given, &mut params)?, ctm),
             _ => {
                 return Err(SceneError::UnknownKind {
                     family: Family::Shape,
@@ -110,6 +109,30 @@ impl Reader<'_, '_> {
         Ok("mesh")
     }
 
+    fn loop_subdivision(
+        &mut self,
+        given: &ParamSet,
+        params: &mut Params,
+    ) -> Result<&'static str, SceneError> {
+        let at = given.span;
+        let list = given.floats("P")?.ok_or_else(|| missing("loopsubdiv", "P", "vertex positions", at))?;
+        let indices = given.ints("indices")?;
+        let indices =
+            indices.ok_or_else(|| missing("loopsubdiv", "indices", "three vertex numbers a face", at))?;
+        let control = Mesh {
+            positions: list.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect(),
+            indices: triangles(&indices, given.at("indices"))?,
+            ..Mesh::default()
+        };
+        let levels = given.int("levels", 3)?;
+        let levels = u32::try_from(levels)
+            .map_err(|_| SceneError::invalid("`levels` must not be negative", given.at("levels")))?;
+        let mesh = loop_subdivision::subdivide(&control, levels, self.limits())
+            .map_err(|error| SceneError::invalid(error.to_string(), at))?;
+        params.push("mesh", Value::Mesh(Arc::new(mesh)), at);
+        Ok("mesh")
+    }
+
     fn ply_mesh(&mut self, given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
         let path = given
             .path("filename", self)?
@@ -157,7 +180,7 @@ impl Reader<'_, '_> {
     }
 }
 
-fn missing(element: &str, param: &str, wanted: &str, at: Span) -> SceneError {
+pub(super) fn missing(element: &str, param: &str, wanted: &str, at: Span) -> SceneError {
     SceneError::MissingParam { element: element.into(), param: param.into(), wanted: wanted.into(), at }
 }
 

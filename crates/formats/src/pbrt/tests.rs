@@ -109,6 +109,22 @@ fn objects_become_groups_and_instances() {
 }
 
 #[test]
+fn curves_and_subdivision_surfaces_are_read() {
+    let desc = good(
+        "WorldBegin Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 1 1 0] \"integer degree\" 2 \"float width\" 0.1 \"float width1\" 0.2 \
+         Shape \"loopsubdiv\" \"integer levels\" 1 \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]",
+    );
+    let [curve, surface] = [0, 1].map(|i| &desc[desc.shapes[i]]);
+    let width = |name| curve.params.get(name).cloned();
+    assert_eq!(curve.kind, "curve");
+    let Some(Value::Floats(points)) = curve.params.get("points") else { panic!("{curve:?}") };
+    assert_eq!(points.len(), 12);
+    assert_ne!(width("width0"), width("width1"));
+    let Some(Value::Mesh(mesh)) = surface.params.get("mesh") else { panic!("{surface:?}") };
+    assert_eq!(mesh.indices.len(), 4);
+}
+
+#[test]
 fn path_lengths_are_converted() {
     let desc = good("Integrator \"path\" \"integer maxdepth\" 7 WorldBegin");
     assert_eq!(desc[desc.integrator.unwrap()].params.get("max_depth"), Some(&Value::Int(8)));
@@ -139,7 +155,6 @@ fn lights_and_textures_know_their_space() {
 #[test]
 fn what_is_not_rendered_is_named() {
     for (text, word) in [
-        ("Shape \"curve\"", "curve"),
         ("Material \"subsurface\"", "subsurface"),
         ("LightSource \"goniometric\"", "goniometric"),
         ("Texture \"a\" \"float\" \"ptex\"", "ptex"),
