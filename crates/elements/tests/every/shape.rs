@@ -77,14 +77,14 @@ fn strip() -> Value {
 /// Control points of tubes, with radii.
 fn curve_points() -> Value {
     let points: [[f32; 4]; 8] = [
-        [-1.5, 0.0, 0.0, 0.15],
-        [-1.0, 0.6, 0.2, 0.25],
-        [-0.3, -0.4, 0.5, 0.2],
-        [0.4, 0.3, 0.1, 0.3],
-        [0.9, -0.2, -0.4, 0.15],
-        [1.4, 0.3, 0.0, 0.2],
-        [1.9, 0.9, 0.3, 0.2],
-        [2.5, 0.8, 0.7, 0.1],
+        [-1.5, 0.0, 0.0, 0.2],
+        [-1.0, 0.2, 0.1, 0.25],
+        [-0.3, -0.1, 0.2, 0.2],
+        [0.4, 0.1, 0.0, 0.25],
+        [0.9, -0.1, -0.1, 0.2],
+        [1.5, 0.1, 0.0, 0.2],
+        [2.1, 0.3, 0.1, 0.25],
+        [2.7, 0.2, 0.3, 0.2],
     ];
     Floats(points.concat().into())
 }
@@ -119,25 +119,21 @@ pub(crate) fn examples(world: &mut World) -> Vec<Example> {
         ("grid", "sdf_grid", params(ball_grid())),
         ("tube", "tube", params([("points", curve_points())])),
         ("tubes, Catmull-Rom", "tube", {
-            params([
-                ("points", curve_points()),
-                ("basis", word("catmull_rom")),
-                ("counts", Ints([4, 4].into())),
-            ])
+            params([("points", curve_points()), ("basis", word("catmull_rom")), ("counts", Ints([8].into()))])
         }),
         (
             "flat strip",
             "curve",
-            params([("points", strip()), ("width0", Float(0.1)), ("width1", Float(0.2))]),
+            params([("points", strip()), ("width0", Float(0.3)), ("width1", Float(0.5))]),
         ),
         ("round strip", "curve", {
-            params([("points", strip()), ("width0", Float(0.2)), ("style", word("cylinder"))])
+            params([("points", strip()), ("width0", Float(0.5)), ("style", word("cylinder"))])
                 .with("basis", word("bspline"))
-                .with("width1", Float(0.1))
+                .with("width1", Float(0.4))
         }),
         ("ribbon", "curve", {
-            params([("points", strip()), ("style", word("ribbon")), ("width0", Float(0.3))])
-                .with("width1", Float(0.2))
+            params([("points", strip()), ("style", word("ribbon")), ("width0", Float(0.8))])
+                .with("width1", Float(0.6))
                 .with("normals", Floats([0.0, 0.2, 1.0, 0.3, 0.0, 1.0, -0.2, 0.4, 1.0].into()))
         }),
         ("chains", "tube", {
@@ -262,8 +258,8 @@ fn hits_lie_on_the_surface() {
 fn derivatives_follow_the_surface() {
     let mut world = World::default();
     let mut rng = Pcg32::new(2);
-    // A grid has no parameters; strips turn to the ray, and pretend to be round.
-    let without = ["grid", "round strip"];
+    // A grid has no parameters; strips lie at their curve's depth, and pretend to be turned or round.
+    let without = ["grid", "round strip", "ribbon"];
     for example in examples(&mut world).into_iter().filter(|example| !without.contains(&example.label)) {
         let shape = &world.shapes[example.shape];
         let (center, radius) = ball_around(&shape.bounds());
