@@ -16,7 +16,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use aureole_desc::{ParamDoc, Params, SceneError, Span};
-use aureole_math::{Bounds3, Point2, Point3, Ray, Vector3};
+use aureole_math::{Bounds3, Point2, Ray, Vector3};
 
 use super::quadric::{ObjectRay, ObjectSpace};
 use super::spline::{Basis, Cubic};
@@ -323,6 +323,7 @@ mod tests {
     use super::*;
     use crate::element::tests::NoResolver;
     use aureole_desc::Value;
+    use aureole_math::Point3;
 
     fn strip(style: &str) -> Curve {
         let line = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 3.0, 0.0, 0.0];
