@@ -1,10 +1,16 @@
 //! How acceleration structures are built.
 
+pub use crate::grid::GridConfig;
+
 /// The structure that finds hits. All of them find the same ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Structure {
     /// Every primitive, every ray: the oracle.
     List,
+    /// Equal cells, each with a list of what is in it.
+    Grid,
+    /// A plain hierarchy of bounding volumes: two children a node.
+    Binary,
     /// A hierarchy of bounding volumes, eight children a node.
     #[default]
     Hierarchy,
@@ -33,7 +39,7 @@ pub enum Quality {
 }
 
 /// Options of a build.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Config {
     /// The structure.
     pub structure: Structure,
@@ -41,4 +47,6 @@ pub struct Config {
     pub accuracy: Accuracy,
     /// The hierarchy's quality.
     pub quality: Quality,
+    /// The grid's layout.
+    pub grid: GridConfig,
 }

@@ -21,6 +21,8 @@ pub enum Geometry {
     },
     /// Boxes around shapes that the caller intersects.
     User(Vec<Bounds3>),
+    /// The same where the shapes are balls that fill their boxes: structures that look closer put them into fewer places.
+    Balls(Vec<Bounds3>),
     /// Another world, placed by a transform.
     Instance {
         /// What is repeated.

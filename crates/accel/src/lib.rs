@@ -17,17 +17,22 @@
 //! ```
 
 mod big;
+mod binary;
 mod bvh;
 mod config;
 mod error;
+mod grid;
 mod hit;
+mod index;
+mod overlap;
 mod query;
 mod simd;
 mod triangle;
 mod world;
 
 pub use bvh::Stats;
-pub use config::{Accuracy, Config, Quality, Structure};
+pub use config::{Accuracy, Config, GridConfig, Quality, Structure};
 pub use error::AccelError;
 pub use hit::{Geometry, Hit, NO_INSTANCE, NoUserShapes, UserHit, UserShapes};
+pub use overlap::{ball_overlaps_box, triangle_overlaps_box};
 pub use world::World;

@@ -7,10 +7,11 @@ use std::marker::PhantomData;
 use aureole_math::Ray;
 
 use crate::bvh::{Bvh8, Leaf, PACKET, Packet, VisitLeaf, VisitPacket};
+use crate::index::Index;
 use crate::simd::{self, Kernel, Simd, lanes};
 use crate::triangle::{Block, Fast, TriangleTest, Watertight};
 use crate::world::Object;
-use crate::{Accuracy, Hit, NO_INSTANCE, Structure, UserShapes, World};
+use crate::{Accuracy, Hit, NO_INSTANCE, UserShapes, World};
 
 /// The nearest hit of one ray.
 #[inline]
@@ -74,10 +75,8 @@ impl<U: UserShapes, T: TriangleTest> Kernel for Closest<'_, U, T> {
     fn run<S: Simd>(self) {
         let Self(world, rays, hits, user, _) = self;
         for (rays, hits) in rays.chunks(PACKET).zip(hits.chunks_mut(PACKET)) {
-            let packet =
-                <&[Ray; PACKET]>::try_from(rays).ok().filter(|_| world.structure == Structure::Hierarchy);
-            match packet.and_then(|rays| Some((rays, Packet::<S>::new(rays)?))) {
-                Some((rays, packet)) => closest_of_packet::<S, T, U>(world, rays, &packet, hits, user),
+            match Coherent::<S>::new(world, rays) {
+                Some(coherent) => closest_of_packet::<S, T, U>(world, &coherent, hits, user),
                 None => {
                     for (ray, hit) in rays.iter().zip(hits) {
                         *hit = closest::<S, T, U>(world, ray, user);
@@ -88,15 +87,32 @@ impl<U: UserShapes, T: TriangleTest> Kernel for Closest<'_, U, T> {
     }
 }
 
+/// Rays of about one direction, and a hierarchy that can be walked with all of them.
+struct Coherent<'a, S: Simd> {
+    rays: &'a [Ray; PACKET],
+    packet: Packet<S>,
+    bvh: &'a Bvh8,
+}
+
+impl<'a, S: Simd> Coherent<'a, S> {
+    #[inline(always)]
+    fn new(world: &'a World, rays: &'a [Ray]) -> Option<Self> {
+        match (&world.triangles, <&[Ray; PACKET]>::try_from(rays)) {
+            (Index::Wide(bvh), Ok(rays)) => Some(Self { rays, packet: Packet::new(rays)?, bvh }),
+            _ => None,
+        }
+    }
+}
+
 /// The nearest hits of rays of about one direction.
 #[inline(always)]
 fn closest_of_packet<S: Simd, T: TriangleTest, U: UserShapes>(
     world: &World,
-    rays: &[Ray; PACKET],
-    packet: &Packet<S>,
+    coherent: &Coherent<'_, S>,
     hits: &mut [Hit],
     user: &U,
 ) {
+    let rays = coherent.rays;
     // No arrays' `map` here: it would not be compiled for the instruction set.
     let mut tests = [T::new(&rays[0]); PACKET];
     let mut nearest = [Candidate { t: 0.0, u: 0.0, v: 0.0, id: 0 }; PACKET];
@@ -108,7 +124,7 @@ fn closest_of_packet<S: Simd, T: TriangleTest, U: UserShapes>(
     }
     let together = T::together(&tests);
     let mut among = NearestTriangles { world, user, rays, tests, together, nearest };
-    world.triangles.walk_packet(packet, &mut ends, &mut among);
+    coherent.bvh.walk_packet(&coherent.packet, &mut ends, &mut among);
     for (i, hit) in hits.iter_mut().enumerate() {
         let best = among.search(i).best();
         *hit = closest_after_triangles::<S, U>(world, &rays[i], best, user);
@@ -133,7 +149,7 @@ fn closest<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, us
     let mut best = Hit { t: ray.t_max, ..Hit::NONE };
     if !world.blocks.is_empty() {
         let mut among = NearestTriangle::new(world, user, ray, T::new(ray));
-        walk::<S>(world, &world.triangles, world.blocks.len(), ray, ray.t_max, &mut among);
+        world.triangles.walk::<S, _>(ray, ray.t_max, &mut among);
         best = among.best();
     }
     closest_after_triangles::<S, U>(world, ray, best, user)
@@ -144,7 +160,7 @@ fn closest<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, us
 fn closest_after_triangles<S: Simd, U: UserShapes>(world: &World, ray: &Ray, mut best: Hit, user: &U) -> Hit {
     if !world.objects.is_empty() {
         let mut among = NearestObject { world, user, ray, best };
-        walk::<S>(world, &world.objects_bvh, world.objects.len(), ray, best.t, &mut among);
+        world.object_index.walk::<S, _>(ray, best.t, &mut among);
         best = among.best;
     }
     if best.is_some() { best } else { Hit::NONE }
@@ -153,31 +169,13 @@ fn closest_after_triangles<S: Simd, U: UserShapes>(world: &World, ray: &Ray, mut
 #[inline(always)]
 fn any<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
     let mut triangle = AnyTriangle { world, user, ray, test: T::new(ray), blocked: false };
-    walk::<S>(world, &world.triangles, world.blocks.len(), ray, ray.t_max, &mut triangle);
+    world.triangles.walk::<S, _>(ray, ray.t_max, &mut triangle);
     if triangle.blocked || world.objects.is_empty() {
         return triangle.blocked;
     }
     let mut object = AnyObject { world, user, ray, blocked: false };
-    walk::<S>(world, &world.objects_bvh, world.objects.len(), ray, ray.t_max, &mut object);
+    world.object_index.walk::<S, _>(ray, ray.t_max, &mut object);
     object.blocked
-}
-
-/// Visits the leaves of a structure that a ray may meet.
-#[inline(always)]
-fn walk<S: Simd>(
-    world: &World,
-    bvh: &Bvh8,
-    count: usize,
-    ray: &Ray,
-    t_max: f32,
-    visitor: &mut impl VisitLeaf,
-) {
-    match world.structure {
-        Structure::List => {
-            visitor.visit::<S>(0, count);
-        }
-        Structure::Hierarchy => bvh.walk::<S, _>(ray, t_max, visitor),
-    }
 }
 
 /// A hit with a triangle, by its number in the level.
@@ -368,7 +366,7 @@ impl<U: UserShapes> NearestObject<'_, U> {
         // One step beyond the best hit, so that an equally near thing can win by its number.
         let until_best = self.best.t.next_up().min(self.ray.t_max);
         match object {
-            Object::User { geometry, primitive } => {
+            Object::User { geometry, primitive } | Object::Ball { geometry, primitive } => {
                 let (geometry, primitive) = (*geometry, *primitive);
                 let ray = self.ray.until(until_best);
                 if let Some(found) = self.user.intersect(self.world.tag, geometry, primitive, &ray) {
@@ -413,7 +411,7 @@ impl<U: UserShapes> AnyObject<'_, U> {
     fn object(&self, object: &Object) -> bool {
         let (ray, user, level_tag) = (self.ray, self.user, self.world.tag);
         match object {
-            Object::User { geometry, primitive } => {
+            Object::User { geometry, primitive } | Object::Ball { geometry, primitive } => {
                 let (geometry, primitive) = (*geometry, *primitive);
                 user.intersect(level_tag, geometry, primitive, ray).is_some_and(|found| {
                     let (t, u, v) = (found.t, found.u, found.v);

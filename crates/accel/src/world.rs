@@ -6,14 +6,17 @@ use aureole_math::{Bounds3, Point3, Ray, Transform};
 use rayon::prelude::*;
 
 use crate::big::Big;
-use crate::bvh::{Bvh8, Stats, build};
+use crate::bvh::Stats;
+use crate::index::{Index, Indexed};
+use crate::overlap::{ball_overlaps_box, triangle_overlaps_box};
 use crate::triangle::{Block, LANES};
-use crate::{AccelError, Accuracy, Config, Geometry, Hit, Structure, UserShapes, query};
+use crate::{AccelError, Accuracy, Config, Geometry, Hit, UserShapes, query};
 
 /// Something that is not a triangle.
 #[derive(Clone, Debug)]
 pub(crate) enum Object {
     User { geometry: u32, primitive: u32 },
+    Ball { geometry: u32, primitive: u32 },
     Instance { geometry: u32, level: Arc<World>, object_from_world: Transform },
 }
 
@@ -22,13 +25,12 @@ pub(crate) enum Object {
 pub struct World {
     pub(crate) tag: u32,
     bounds: Bounds3,
-    pub(crate) triangles: Bvh8,
+    pub(crate) triangles: Index,
     pub(crate) blocks: Big<Block>,
     /// For each mesh, the number of its first triangle and its geometry.
     meshes: Vec<[u32; 2]>,
-    pub(crate) objects_bvh: Bvh8,
+    pub(crate) object_index: Index,
     pub(crate) objects: Vec<Object>,
-    pub(crate) structure: Structure,
     pub(crate) accuracy: Accuracy,
 }
 
@@ -41,12 +43,11 @@ impl World {
         let mut world = Self {
             tag,
             bounds: Bounds3::EMPTY,
-            triangles: Bvh8::default(),
+            triangles: Index::List { bounds: Bounds3::EMPTY, groups: 0 },
             blocks: Big::default(),
             meshes: Vec::new(),
-            objects_bvh: Bvh8::default(),
+            object_index: Index::List { bounds: Bounds3::EMPTY, groups: 0 },
             objects: Vec::new(),
-            structure: config.structure,
             accuracy: config.accuracy,
         };
         world.build_triangles(&geometries, config)?;
@@ -72,15 +73,15 @@ impl World {
             indices[(id - starts[mesh][0]) as usize].map(|i| positions[i as usize])
         };
         let bounds = |id: u32| Bounds3::around(triangle(id).map(Point3::from));
-        let built = build(count, bounds, LANES, config);
-        self.blocks = Big::zeroed(built.groups.len());
-        self.blocks.par_iter_mut().zip(&built.groups).for_each(|(block, &[first, count])| {
-            let ids = &built.order[first as usize..(first + count) as usize];
+        let overlaps = |id: u32, cell: &Bounds3| triangle_overlaps_box(triangle(id).map(Point3::from), cell);
+        let Indexed { index, order, groups } = Index::build(count, bounds, overlaps, LANES, config);
+        self.blocks = Big::zeroed(groups.len());
+        self.blocks.par_iter_mut().zip(&groups).for_each(|(block, &[first, count])| {
+            let ids = &order[first as usize..(first + count) as usize];
             *block = Block::new(config.accuracy, ids, triangle);
         });
-        self.triangles = built.bvh;
-        self.triangles.stats.bytes = size_of_val(&self.triangles.nodes[..]) + size_of_val(&self.blocks[..]);
-        self.bounds = self.bounds.union(self.triangles.bounds());
+        self.bounds = self.bounds.union(index.bounds());
+        self.triangles = index;
         Ok(())
     }
 
@@ -102,15 +103,14 @@ impl World {
             match geometry {
                 Geometry::Triangles { .. } => {}
                 Geometry::User(list) => {
-                    let broken = list.iter().filter(|b| !b.min.is_finite() || !b.max.is_finite()).count();
-                    if broken > 0 {
-                        return Err(AccelError::NonFinite { geometry: g, count: broken });
-                    }
-                    all.extend(
-                        (0..list.len() as u32)
-                            .map(|primitive| Object::User { geometry: geometry_id, primitive }),
-                    );
-                    boxes.extend(list);
+                    let user = |primitive| Object::User { geometry: geometry_id, primitive };
+                    all.extend((0..list.len() as u32).map(user));
+                    boxes.extend(checked(list, g)?);
+                }
+                Geometry::Balls(list) => {
+                    let ball = |primitive| Object::Ball { geometry: geometry_id, primitive };
+                    all.extend((0..list.len() as u32).map(ball));
+                    boxes.extend(checked(list, g)?);
                 }
                 Geometry::Instance { level, world_from_object } => {
                     let bounds = world_from_object.bounds(&level.bounds);
@@ -128,11 +128,16 @@ impl World {
         }
         check_count(boxes.len())?;
         self.bounds = boxes.iter().fold(self.bounds, |b, other| b.union(*other));
-        let built = build(boxes.len(), |i| boxes[i as usize], 1, config);
-        self.objects = built.order.iter().map(|&i| all[i as usize].clone()).collect();
-        self.objects_bvh = built.bvh;
-        self.objects_bvh.stats.bytes =
-            size_of_val(&self.objects_bvh.nodes[..]) + size_of_val(&self.objects[..]);
+        let overlaps = |i: u32, cell: &Bounds3| match all[i as usize] {
+            Object::Ball { .. } => {
+                let [low, high] = [boxes[i as usize].min, boxes[i as usize].max];
+                ball_overlaps_box(low + (high - low) * 0.5, 0.5 * (high - low).max_element(), cell)
+            }
+            _ => true,
+        };
+        let Indexed { index, order, .. } = Index::build(boxes.len(), |i| boxes[i as usize], overlaps, 1, config);
+        self.objects = order.iter().map(|&i| all[i as usize].clone()).collect();
+        self.object_index = index;
         Ok(())
     }
 
@@ -143,7 +148,9 @@ impl World {
 
     /// Figures about the hierarchies of this level.
     pub fn stats(&self) -> Stats {
-        self.triangles.stats.merged(self.objects_bvh.stats)
+        let bytes = size_of_val(&self.blocks[..]) + size_of_val(&self.objects[..]);
+        let stats = self.triangles.stats().merged(self.object_index.stats());
+        Stats { bytes: stats.bytes + bytes, ..stats }
     }
 
     /// The nearest hit of a ray in `(t_min, t_max)`.
@@ -173,6 +180,11 @@ impl World {
 /// Leaves name their first item in 27 bits.
 fn check_count(items: usize) -> Result<(), AccelError> {
     if items < 1 << 27 { Ok(()) } else { Err(AccelError::TooMany(items as u64)) }
+}
+
+fn checked(boxes: Vec<Bounds3>, geometry: usize) -> Result<Vec<Bounds3>, AccelError> {
+    let count = boxes.iter().filter(|b| !b.min.is_finite() || !b.max.is_finite()).count();
+    if count == 0 { Ok(boxes) } else { Err(AccelError::NonFinite { geometry, count }) }
 }
 
 fn check_mesh(geometry: usize, positions: &[[f32; 3]], indices: &[[u32; 3]]) -> Result<(), AccelError> {

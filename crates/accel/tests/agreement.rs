@@ -63,13 +63,16 @@ fn agree<U: UserShapes>(geometries: &[Geometry], user: &U, n: usize) {
         World::build(geometries.to_vec(), 0, &Config { structure, ..Config::default() })
             .expect("the geometry is sound")
     };
-    let (list, tree) = (build(Structure::List), build(Structure::Hierarchy));
+    let list = build(Structure::List);
+    let others = [Structure::Grid, Structure::Binary, Structure::Hierarchy].map(|kind| (kind, build(kind)));
     let mut hits = 0;
     for ray in rays(n, 77) {
         let expected = list.closest_hit(&ray, user);
-        assert_eq!(tree.closest_hit(&ray, user), expected, "{ray:?}");
-        assert_eq!(tree.occluded(&ray, user), expected.is_some());
         assert_eq!(list.occluded(&ray, user), expected.is_some());
+        for (kind, world) in &others {
+            assert_eq!(world.closest_hit(&ray, user), expected, "{kind:?} {ray:?}");
+            assert_eq!(world.occluded(&ray, user), expected.is_some(), "{kind:?} {ray:?}");
+        }
         hits += usize::from(expected.is_some());
     }
     assert!(hits > n / 400, "the test hits something");

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::collapse::{Costs, collapse};
 use super::node::Bvh8;
-use super::tree::Item;
+use super::tree::{BinaryTree, Item};
 use super::{binned, reinsert};
 use crate::big::Big;
 use crate::{Config, Quality};
@@ -19,6 +19,9 @@ pub(crate) struct Built {
     pub groups: Vec<[u32; 2]>,
 }
 
+/// The share of the nodes for which better places are sought.
+const REINSERTED: f32 = 0.3;
+
 /// Builds a hierarchy over boxes, whose leaves hold groups of up to `lanes` primitives.
 pub(crate) fn build(
     count: usize,
@@ -26,18 +29,25 @@ pub(crate) fn build(
     lanes: usize,
     config: &Config,
 ) -> Built {
-    let mut items = Big::<Item>::zeroed(count);
-    items.par_iter_mut().zip(0..count as u32).for_each(|(item, i)| *item = Item::new(&bounds(i), i));
+    let items = items(count, bounds);
     let tree = match config.quality {
         Quality::Fast | Quality::Medium => binned::build(items, lanes),
-        Quality::High => {
-            let e = |n: &str, d: f32| std::env::var(n).ok().and_then(|s| s.parse().ok()).unwrap_or(d);
-            reinsert::optimize(
-                binned::build(items, e("AC_L", 1.0) as usize),
-                e("AC_S", 0.1),
-                e("AC_P", 1.0) as usize,
-            )
-        }
+        Quality::High => reinsert::optimize(binned::build(items, lanes), REINSERTED, 1),
     };
     collapse(tree, &Costs::new(lanes))
+}
+
+/// Builds the plain binary tree over boxes, with up to `leaf_size` in a leaf.
+pub(crate) fn build_binary(
+    count: usize,
+    bounds: impl Fn(u32) -> Bounds3 + Sync,
+    leaf_size: usize,
+) -> BinaryTree {
+    binned::build(items(count, bounds), leaf_size)
+}
+
+fn items(count: usize, bounds: impl Fn(u32) -> Bounds3 + Sync) -> Big<Item> {
+    let mut items = Big::<Item>::zeroed(count);
+    items.par_iter_mut().zip(0..count as u32).for_each(|(item, i)| *item = Item::new(&bounds(i), i));
+    items
 }

@@ -179,7 +179,7 @@ impl Bvh8 {
             current = loop {
                 let Some(entry) = stack.pop() else { return };
                 // Also stops when no ray wants more: then the latest end is below zero.
-                if !(f32::from_bits((entry >> 32) as u32) <= t_max) {
+                if f32::from_bits((entry >> 32) as u32) > t_max {
                     continue;
                 }
                 let (parent, slot) = (&self.nodes[entry as u32 as usize / WIDTH], entry as usize % WIDTH);

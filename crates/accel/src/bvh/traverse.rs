@@ -68,7 +68,7 @@ impl<S: Simd> TraversalRay<S> {
 
 /// How far behind the best hit boxes are still opened: where a ray enters a box and where it meets a triangle in it are
 /// rounded differently, and of equally near hits the one with the smallest number must be found.
-pub(super) const TIE_SCALE: f32 = 1.0 + 1e-5;
+pub(crate) const TIE_SCALE: f32 = 1.0 + 1e-5;
 
 /// What a leaf says after it was tested.
 pub(crate) enum Leaf {

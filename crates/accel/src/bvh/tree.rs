@@ -4,6 +4,7 @@ use aureole_math::{Bounds3, Point3};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
 
+use super::node::Stats;
 use crate::big::Big;
 
 /// Marks a leaf.
@@ -144,9 +145,31 @@ impl BinaryNode {
 
 /// A binary tree in depth-first order: the root is node 0, the left child comes right after its parent, and whatever is below
 /// a node is between it and what comes after it. The items of the leaves are in the same order.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct BinaryTree {
     pub nodes: Big<BinaryNode>,
     /// The primitives of the leaves.
     pub order: Big<u32>,
+}
+
+impl BinaryTree {
+    /// Figures about it, when each leaf holds one group.
+    pub(crate) fn stats(&self) -> Stats {
+        let mut depths = vec![1; self.nodes.len()];
+        let mut stats = Stats { bytes: size_of_val(&self.nodes[..]), ..Stats::default() };
+        for (i, node) in self.nodes.iter().enumerate() {
+            stats.sah_cost += node.half_area();
+            stats.depth = stats.depth.max(depths[i]);
+            match node.below() {
+                Below::Nodes(left, right) => {
+                    stats.nodes += 1;
+                    depths[left] = depths[i] + 1;
+                    depths[right] = depths[i] + 1;
+                }
+                Below::Items { .. } => stats.leaves += 1,
+            }
+        }
+        stats.sah_cost /= self.nodes.first().map_or(1.0, BinaryNode::half_area).max(f32::MIN_POSITIVE);
+        stats
+    }
 }

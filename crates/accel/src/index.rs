@@ -1,0 +1,107 @@
+//! The structures behind one face: each finds the packed things that a ray may meet.
+
+use aureole_math::{Bounds3, Ray};
+
+use crate::binary;
+use crate::bvh::{self, Below, BinaryNode, BinaryTree, Bvh8, Stats, VisitLeaf};
+use crate::grid::Grid;
+use crate::simd::Simd;
+use crate::{Config, Structure};
+
+/// A structure over things that its owner has packed in groups.
+#[derive(Clone, Debug)]
+pub(crate) enum Index {
+    /// All of them.
+    List { bounds: Bounds3, groups: usize },
+    Grid(Grid),
+    Binary(BinaryTree),
+    Wide(Bvh8),
+}
+
+/// A structure, and how its owner must pack things.
+pub(crate) struct Indexed {
+    pub index: Index,
+    /// Things in the order of the groups.
+    pub order: Vec<u32>,
+    /// Each group's first in `order` and how many it has.
+    pub groups: Vec<[u32; 2]>,
+}
+
+impl Index {
+    /// Builds the structure over `count` things. A group has up to `lanes` of them; `overlaps` says whether a thing is in a
+    /// box.
+    pub(crate) fn build(
+        count: usize,
+        bounds: impl Fn(u32) -> Bounds3 + Sync,
+        overlaps: impl Fn(u32, &Bounds3) -> bool,
+        lanes: usize,
+        config: &Config,
+    ) -> Indexed {
+        let all = || (0..count as u32).collect();
+        match config.structure {
+            Structure::List => {
+                let box_around = (0..count as u32).fold(Bounds3::EMPTY, |b, i| b.union(bounds(i)));
+                let groups: Vec<_> = (0..count as u32)
+                    .step_by(lanes)
+                    .map(|first| [first, (count as u32 - first).min(lanes as u32)])
+                    .collect();
+                Indexed { index: Self::List { bounds: box_around, groups: groups.len() }, order: all(), groups }
+            }
+            Structure::Grid => {
+                let grid = Grid::build(count, bounds, overlaps, &config.grid);
+                Indexed { index: Self::Grid(grid), order: all(), groups: (0..count as u32).map(|i| [i, 1]).collect() }
+            }
+            Structure::Binary => {
+                let (mut tree, mut groups) = (bvh::build_binary(count, bounds, lanes), Vec::new());
+                for node in tree.nodes.iter_mut() {
+                    if let Below::Items { first, count } = node.below() {
+                        *node = BinaryNode::leaf(node.bounds, groups.len(), 1);
+                        groups.push([first as u32, count as u32]);
+                    }
+                }
+                let order = std::mem::take(&mut tree.order).to_vec();
+                Indexed { index: Self::Binary(tree), order, groups }
+            }
+            Structure::Hierarchy => {
+                let built = bvh::build(count, bounds, lanes, config);
+                Indexed { index: Self::Wide(built.bvh), order: built.order.to_vec(), groups: built.groups }
+            }
+        }
+    }
+
+    /// Visits what a ray may meet before `t_max`.
+    #[inline(always)]
+    pub(crate) fn walk<S: Simd, V: VisitLeaf>(&self, ray: &Ray, t_max: f32, visitor: &mut V) {
+        match self {
+            Self::Wide(bvh) => bvh.walk::<S, V>(ray, t_max, visitor),
+            Self::List { groups, .. } => {
+                visitor.visit::<S>(0, *groups);
+            }
+            Self::Grid(grid) => grid.walk::<S, V>(ray, t_max, visitor),
+            Self::Binary(tree) => binary::walk::<S, V>(tree, ray, t_max, visitor),
+        }
+    }
+
+    /// The box around everything.
+    pub(crate) fn bounds(&self) -> Bounds3 {
+        match self {
+            Self::List { bounds, .. } => *bounds,
+            Self::Grid(grid) => grid.bounds(),
+            Self::Binary(tree) => tree.nodes.first().map_or(Bounds3::EMPTY, |root| root.bounds),
+            Self::Wide(bvh) => bvh.bounds(),
+        }
+    }
+
+    /// Figures about it, without what its owner has packed.
+    pub(crate) fn stats(&self) -> Stats {
+        match self {
+            Self::List { groups, .. } => Stats { leaves: *groups, ..Stats::default() },
+            Self::Grid(grid) => {
+                let (cells, entries) = grid.cells_and_entries();
+                Stats { leaves: cells, primitives: entries, bytes: grid.bytes(), ..Stats::default() }
+            }
+            Self::Binary(tree) => tree.stats(),
+            Self::Wide(bvh) => Stats { bytes: size_of_val(&bvh.nodes[..]), ..bvh.stats },
+        }
+    }
+}
