@@ -1,7 +1,7 @@
 //! The plain hierarchy: two children a node, the nearer one first. Slower than the wide one, and easier to read.
 
-use aureole_math::{Bounds3, Ray};
 use arrayvec::ArrayVec;
+use aureole_math::{Bounds3, Ray};
 
 use crate::bvh::{Below, BinaryTree, Leaf, MAX_LEVELS, TIE_SCALE, VisitLeaf};
 use crate::simd::Simd;
@@ -47,9 +47,10 @@ pub(crate) fn walk<S: Simd, V: VisitLeaf>(tree: &BinaryTree, ray: &Ray, mut t_ma
 #[inline(always)]
 fn enter(bounds: &Bounds3, ray: &Ray, inv: [f32; 3], t_max: f32) -> Option<f32> {
     let (mut enter, mut leave) = (ray.t_min, t_max);
-    for axis in 0..3 {
-        let (a, b) = ((bounds.min[axis] - ray.origin[axis]) * inv[axis], (bounds.max[axis] - ray.origin[axis]) * inv[axis]);
-        let (near, far) = if inv[axis] < 0.0 { (b, a) } else { (a, b) };
+    for (axis, &inv) in inv.iter().enumerate() {
+        let along = |plane: f32| (plane - ray.origin[axis]) * inv;
+        let (a, b) = (along(bounds.min[axis]), along(bounds.max[axis]));
+        let (near, far) = if inv < 0.0 { (b, a) } else { (a, b) };
         // In this order, a NaN decides nothing.
         enter = if near > enter { near } else { enter };
         leave = if far * FAR_SCALE < leave { far * FAR_SCALE } else { leave };

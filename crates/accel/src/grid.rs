@@ -7,7 +7,7 @@
 //! # References
 //! [Amanatides and Woo 1987] "A Fast Voxel Traversal Algorithm for Ray Tracing"; mailboxes: [Arnaldi et al. 1987].
 
-use aureole_math::{Bounds3, Point3, Ray, Vector3};
+use aureole_math::{Bounds3, Point3, Ray};
 
 use crate::bvh::{Leaf, TIE_SCALE, VisitLeaf};
 use crate::simd::Simd;
@@ -82,7 +82,14 @@ impl Grid {
                 continue;
             }
             let mut sum = 0;
-            grid.starts = cells.iter().map(|n| { sum += n; sum - n }).chain([entries as u32]).collect();
+            grid.starts = cells
+                .iter()
+                .map(|n| {
+                    sum += n;
+                    sum - n
+                })
+                .chain([entries as u32])
+                .collect();
             grid.objects = vec![0; entries];
             let mut next = grid.starts.clone();
             let mut objects = std::mem::take(&mut grid.objects);
@@ -128,7 +135,8 @@ impl Grid {
         let range = |axis: usize| {
             let slack = size[axis] / self.sides[axis] as f32 * OVERLAP[0] + size.length() * OVERLAP[1];
             let cell = |x: f32| {
-                let at = (x - self.bounds.min[axis]) / size[axis].max(f32::MIN_POSITIVE) * self.sides[axis] as f32;
+                let at =
+                    (x - self.bounds.min[axis]) / size[axis].max(f32::MIN_POSITIVE) * self.sides[axis] as f32;
                 (at.max(0.0) as usize).min(self.sides[axis] - 1)
             };
             cell(object.min[axis] - slack)..=cell(object.max[axis] + slack)
@@ -208,7 +216,7 @@ impl Line {
         let wide = |v: [f32; 3]| v.map(f64::from);
         let (o, d) = (wide(ray.origin.to_array()), wide(ray.direction.to_array()));
         let (low, high) = (wide(grid.bounds.min.to_array()), wide(grid.bounds.max.to_array()));
-        let size = Vector3::from(grid.bounds.max - grid.bounds.min).length();
+        let size = (grid.bounds.max - grid.bounds.min).length();
         let slack = f64::from(size) * f64::from(OVERLAP[1]);
         let (mut enter, mut leave) = (f64::from(ray.t_min), f64::from(ray.t_max));
         for axis in 0..3 {
@@ -254,7 +262,13 @@ impl Line {
     #[inline(always)]
     fn advance(&mut self, t_max: f64) -> bool {
         let [x, y, z] = self.crossing;
-        let axis = if x <= y && x <= z { 0 } else if y <= z { 1 } else { 2 };
+        let axis = if x <= y && x <= z {
+            0
+        } else if y <= z {
+            1
+        } else {
+            2
+        };
         if self.crossing[axis] > t_max || self.remaining[axis] == 0 {
             return false;
         }

@@ -12,7 +12,10 @@ use crate::{Config, Structure};
 #[derive(Clone, Debug)]
 pub(crate) enum Index {
     /// All of them.
-    List { bounds: Bounds3, groups: usize },
+    List {
+        bounds: Bounds3,
+        groups: usize,
+    },
     Grid(Grid),
     Binary(BinaryTree),
     Wide(Bvh8),
@@ -45,11 +48,19 @@ impl Index {
                     .step_by(lanes)
                     .map(|first| [first, (count as u32 - first).min(lanes as u32)])
                     .collect();
-                Indexed { index: Self::List { bounds: box_around, groups: groups.len() }, order: all(), groups }
+                Indexed {
+                    index: Self::List { bounds: box_around, groups: groups.len() },
+                    order: all(),
+                    groups,
+                }
             }
             Structure::Grid => {
                 let grid = Grid::build(count, bounds, overlaps, &config.grid);
-                Indexed { index: Self::Grid(grid), order: all(), groups: (0..count as u32).map(|i| [i, 1]).collect() }
+                Indexed {
+                    index: Self::Grid(grid),
+                    order: all(),
+                    groups: (0..count as u32).map(|i| [i, 1]).collect(),
+                }
             }
             Structure::Binary => {
                 let (mut tree, mut groups) = (bvh::build_binary(count, bounds, lanes), Vec::new());

@@ -45,7 +45,8 @@ mod tests {
         let unit = Bounds3::new(Point3::splat(0.0), Point3::splat(1.0));
         let (mut both, mut neither) = (0, 0);
         for _ in 0..3000 {
-            let mut point = || Point3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) * 5.0 - Vector3::splat(2.0);
+            let mut point =
+                || Point3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) * 5.0 - Vector3::splat(2.0);
             let [a, b, c] = [point(), point(), point()];
             let steps = 80;
             let inside = (0..=steps).any(|i| {

@@ -435,3 +435,6 @@ impl<U: UserShapes> VisitLeaf for AnyObject<'_, U> {
         if self.blocked { Leaf::Stop } else { Leaf::Continue(self.ray.t_max) }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -135,7 +135,8 @@ impl World {
             }
             _ => true,
         };
-        let Indexed { index, order, .. } = Index::build(boxes.len(), |i| boxes[i as usize], overlaps, 1, config);
+        let Indexed { index, order, .. } =
+            Index::build(boxes.len(), |i| boxes[i as usize], overlaps, 1, config);
         self.objects = order.iter().map(|&i| all[i as usize].clone()).collect();
         self.object_index = index;
         Ok(())

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use aureole_accel::{AccelError, Config, Geometry, NoUserShapes, Structure, UserHit, UserShapes, World};
+use aureole_accel::{
+    AccelError, Accuracy, Config, Geometry, GridConfig, Hit, NoUserShapes, Quality, Structure, UserHit,
+    UserShapes, World,
+};
 use aureole_math::{Bounds3, Pcg32, Point3, Ray, Transform, Vector3, warp};
 
 fn soup(n: usize, size: f32, seed: u64) -> Geometry {
@@ -203,5 +206,80 @@ fn agree_somewhere(geometries: &[Geometry], seed: u64) {
         let target = Point3::new(rng.next_f32(), rng.next_f32(), rng.next_f32());
         let ray = Ray::new(target - direction * (rng.next_f32() * 40.0), direction);
         assert_eq!(tree.closest_hit(&ray, &NoUserShapes), list.closest_hit(&ray, &NoUserShapes), "{ray:?}");
+    }
+}
+
+/// Rays of a camera that looks at the unit cube, neighbours together.
+fn camera(n: usize, eye: Point3) -> Vec<Ray> {
+    let mut rng = Pcg32::new(9);
+    (0..n)
+        .map(|i| {
+            let (tile, pixel) = (i / 16, i % 16);
+            let at = |cell: usize, fine: usize| {
+                (cell as f32 + (fine as f32 + rng.clone().next_f32()) / 4.0) / 16.0
+            };
+            let target =
+                Point3::new(at(tile % 16, pixel % 4), at(tile / 16 % 16, pixel / 4), rng.next_f32() * 0.01);
+            Ray::new(eye, target - eye)
+        })
+        .collect()
+}
+
+#[test]
+fn packets_find_what_single_rays_find() {
+    for (n, size) in [(1, 1.0), (40, 0.7), (5000, 0.1)] {
+        for accuracy in [Accuracy::Watertight, Accuracy::Fast] {
+            for eye in [Point3::new(0.4, 0.3, 3.0), Point3::new(-2.0, 0.5, 0.5), Point3::new(0.5, 0.5, 0.5)] {
+                let config = Config { accuracy, ..Config::default() };
+                let world = World::build(vec![soup(n, size, 4)], 0, &config).expect("the geometry is sound");
+                let rays = camera(16 * 256, eye);
+                let mut hits = vec![Hit::NONE; rays.len()];
+                world.closest_hits(&rays, &mut hits, &NoUserShapes);
+                for (ray, hit) in rays.iter().zip(&hits) {
+                    assert_eq!(
+                        hit.is_some().then_some(*hit),
+                        world.closest_hit(ray, &NoUserShapes),
+                        "{ray:?}"
+                    );
+                }
+                assert!(hits.iter().any(Hit::is_some) || n == 1);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_fast_test_finds_the_same_in_every_structure() {
+    let build = |structure| {
+        let config = Config { structure, accuracy: Accuracy::Fast, ..Config::default() };
+        World::build(vec![soup(3000, 0.1, 8)], 0, &config).expect("the geometry is sound")
+    };
+    let list = build(Structure::List);
+    let others = [Structure::Grid, Structure::Binary, Structure::Hierarchy].map(build);
+    for ray in rays(3000, 5) {
+        let expected = list.closest_hit(&ray, &NoUserShapes);
+        for world in &others {
+            assert_eq!(world.closest_hit(&ray, &NoUserShapes), expected);
+        }
+    }
+}
+
+#[test]
+fn qualities_and_overlap_tests_change_no_hit() {
+    let geometry = [soup(3000, 0.1, 8), soup(20, 2.0, 9)];
+    let build = |config: Config| World::build(geometry.to_vec(), 0, &config).expect("the geometry is sound");
+    let expected = build(Config::default());
+    let mut configs =
+        [Quality::Fast, Quality::High].map(|quality| Config { quality, ..Config::default() }).to_vec();
+    for (density, exact) in [(0.1, true), (1.0, false), (30.0, true)] {
+        let grid = GridConfig { density, exact };
+        configs.push(Config { structure: Structure::Grid, grid, ..Config::default() });
+    }
+    for config in configs {
+        let world = build(config);
+        for ray in rays(2000, 6) {
+            let hit = world.closest_hit(&ray, &NoUserShapes);
+            assert_eq!(hit, expected.closest_hit(&ray, &NoUserShapes), "{config:?}");
+        }
     }
 }

@@ -10,8 +10,8 @@ mod traverse;
 mod tree;
 
 pub(crate) use build::{build, build_binary};
-pub(crate) use node::{Bvh8, MAX_LEVELS};
 pub use node::Stats;
+pub(crate) use node::{Bvh8, MAX_LEVELS};
 pub(crate) use packet::{PACKET, Packet, VisitPacket};
 pub(crate) use traverse::{Leaf, TIE_SCALE, VisitLeaf};
 pub(crate) use tree::{Below, BinaryNode, BinaryTree};

@@ -1,6 +1,7 @@
 //! `aureole bench`: how fast rays are, beside other libraries.
 
 mod clock;
+mod lecture;
 mod ray_file;
 mod rays;
 
@@ -20,11 +21,14 @@ pub(crate) struct BenchArgs {
 pub(crate) enum Bench {
     /// Rays of a file against a mesh of a file
     Rays(rays::RaysArgs),
+    /// The frame of which a lecture says that it takes 109 hours
+    Lecture(lecture::LectureArgs),
 }
 
 /// Measures.
 pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     match &args.bench {
         Bench::Rays(args) => rays::run(args),
+        Bench::Lecture(args) => lecture::run(args),
     }
 }

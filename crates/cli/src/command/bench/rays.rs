@@ -56,7 +56,11 @@ pub(crate) struct RaysArgs {
 pub(crate) enum Accel {
     /// Every triangle
     List,
-    /// A wide hierarchy of boxes
+    /// Equal cells
+    Grid,
+    /// A hierarchy of boxes, two in a box
+    Binary,
+    /// A hierarchy of boxes, eight in a box
     Hierarchy,
 }
 
@@ -117,6 +121,8 @@ fn config(accel: Accel, test: Test, quality: BuildQuality) -> Config {
     Config {
         structure: match accel {
             Accel::List => Structure::List,
+            Accel::Grid => Structure::Grid,
+            Accel::Binary => Structure::Binary,
             Accel::Hierarchy => Structure::Hierarchy,
         },
         accuracy: match test {
@@ -128,6 +134,7 @@ fn config(accel: Accel, test: Test, quality: BuildQuality) -> Config {
             BuildQuality::Medium => Quality::Medium,
             BuildQuality::High => Quality::High,
         },
+        ..Config::default()
     }
 }
 
