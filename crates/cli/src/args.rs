@@ -1,5 +1,6 @@
 //! The command line.
 
+use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
@@ -31,6 +32,8 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// List the elements that scenes are made of, with their parameters
     List(ListArgs),
+    /// Put together what was rendered in parts (`render --shard`)
+    Merge(MergeArgs),
     /// Measure how far an image is from a reference
     Diff(DiffArgs),
     /// List, show or render the scenes that come with the program
@@ -123,7 +126,9 @@ pub(crate) struct Loudness {
   aureole render scene.xml --time 60 -D angle=30 --set integrator.max_depth=5
   aureole render bunny.ply --resolution 1280x720 --tone agx --exposure 1
   aureole render scene.xml --crop 0.4,0.4,0.6,0.6 -o - > detail.png
-  aureole render gallery:glass --integrator whitted --stats json")]
+  aureole render gallery:glass --integrator whitted --stats json
+  aureole render scene.pbrt -o scene.exr --checkpoint scene.film.exr --resume
+  aureole render scene.pbrt --spp 4096 --shard 3/16 -o part-3.exr")]
 pub(crate) struct RenderArgs {
     /// The image; `-` is standard output [default: the scene's own name for it, else SCENE.png here]
     #[arg(short, long, value_name = "FILE", visible_alias = "outfile", help_heading = "Image")]
@@ -144,7 +149,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, default_value = "srgb", help_heading = "Image")]
     pub tone: Tone,
     /// Samples a pixel [default: the scene's, or as many as fit into --time]
-    #[arg(long, value_name = "N", visible_alias = "samples", help_heading = "Sampling",
+    #[arg(long, value_name = "N", help_heading = "Sampling",
         value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: Option<u32>,
     /// Stop after this time
@@ -153,6 +158,25 @@ pub(crate) struct RenderArgs {
     /// Another seed draws other samples
     #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Sampling")]
     pub seed: u64,
+    /// Render the I-th of N parts of the samples, counted from 0, to a film for `aureole merge`
+    #[arg(long, value_name = "I/N", conflicts_with = "samples", help_heading = "Long renders")]
+    pub shard: Option<Shard>,
+    /// Render these samples of every pixel, to a film for `aureole merge`
+    #[arg(long, value_name = "A..B", value_parser = range, help_heading = "Long renders")]
+    pub samples: Option<Range<u32>>,
+    /// Keep what is done in this file, written now and then, at the end, and on Ctrl-C
+    #[arg(long, value_name = "FILE", help_heading = "Long renders")]
+    pub checkpoint: Option<PathBuf>,
+    /// Time between two checkpoints, such as 90s, 5min, 1h
+    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "60s", help_heading = "Long renders")]
+    pub every: Duration,
+    /// Go on from the checkpoint, if it is there
+    #[arg(long, requires = "checkpoint", help_heading = "Long renders")]
+    pub resume: bool,
+    /// Side of the squares that threads work on, in pixels; the image is the same
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=1024),
+        help_heading = "Sampling")]
+    pub tile: u32,
     /// Threads; 0 is one for each processor
     #[arg(
         short,
@@ -217,6 +241,26 @@ pub(crate) struct ListArgs {
     /// Print a JSON array
     #[arg(long)]
     pub json: bool,
+}
+
+/// `aureole merge`
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  aureole merge part-*.exr -o scene.exr
+  aureole merge part-*.exr -o scene.png --tone agx")]
+pub(crate) struct MergeArgs {
+    /// Films: of `render --shard` or `--samples`, or checkpoints
+    #[arg(required = true)]
+    pub parts: Vec<PathBuf>,
+    /// The image
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Make the image brighter (eight-bit formats): each stop doubles it
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub exposure: f32,
+    /// Curve from radiance to display (eight-bit formats)
+    #[arg(long, default_value = "srgb")]
+    pub tone: Tone,
 }
 
 /// `aureole diff`
@@ -376,6 +420,40 @@ impl FromStr for PixelArg {
     }
 }
 
+/// One of several parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Shard {
+    pub index: u32,
+    pub count: u32,
+}
+
+impl Shard {
+    /// Its share of some samples.
+    pub(crate) fn of(self, spp: u32) -> Range<u32> {
+        let bound = |i: u32| (u64::from(spp) * u64::from(i) / u64::from(self.count)) as u32;
+        bound(self.index)..bound(self.index + 1)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/').map(|(index, count)| (index.parse(), count.parse()));
+        match numbers {
+            Some((Ok(index), Ok(count))) if index < count => Ok(Self { index, count }),
+            _ => Err("it must look like 0/4 to 3/4: parts are counted from 0".to_owned()),
+        }
+    }
+}
+
+fn range(text: &str) -> Result<Range<u32>, String> {
+    match text.split_once("..").map(|(start, end)| (start.parse(), end.parse())) {
+        Some((Ok(start), Ok(end))) if start < end => Ok(start..end),
+        _ => Err("it must look like 0..64; `--spp` is the number of samples of the whole".to_owned()),
+    }
+}
+
 /// Four numbers that bound a part of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Corners(pub [f64; 4]);
@@ -399,10 +477,14 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().ok().filter(|&x: &f64| x > 0.0);
+    let text = text.trim();
+    let units = [("ms", 1e-3), ("min", 60.0), ("m", 60.0), ("h", 3600.0), ("s", 1.0)];
+    let unit = units.iter().find_map(|(name, unit)| Some((text.strip_suffix(name)?, *unit)));
+    let (number, unit) = unit.unwrap_or((text, 1.0));
+    let seconds = number.trim().parse().ok().filter(|&x: &f64| x > 0.0);
     seconds
-        .and_then(|x| Duration::try_from_secs_f64(x).ok())
-        .ok_or_else(|| "it must be a positive number of seconds".to_owned())
+        .and_then(|x| Duration::try_from_secs_f64(x * unit).ok())
+        .ok_or_else(|| "it must be a positive time, such as 90, 90s, 5min or 1h".to_owned())
 }
 
 /// A number of bytes: `500MB`, `4GiB`, `4g`.
@@ -448,6 +530,20 @@ mod tests {
         assert_eq!(bytes("500 MB"), Ok(500_000_000));
         assert_eq!(bytes("123"), Ok(123));
         assert!(bytes("4 potatoes").is_err() && bytes("-4G").is_err() && bytes("").is_err());
+    }
+
+    #[test]
+    fn times_shards_and_ranges_are_read() {
+        assert_eq!(seconds("2.5"), Ok(Duration::from_millis(2500)));
+        assert_eq!(seconds("5min"), Ok(Duration::from_secs(300)));
+        assert_eq!(seconds("20ms"), Ok(Duration::from_millis(20)));
+        assert!(seconds("-1s").is_err() && seconds("soon").is_err());
+        assert_eq!("1/3".parse(), Ok(Shard { index: 1, count: 3 }));
+        assert!("3/3".parse::<Shard>().is_err() && "1".parse::<Shard>().is_err());
+        let parts: Vec<_> = (0..3).map(|index| Shard { index, count: 3 }.of(u32::MAX)).collect();
+        assert!(parts[0].start == 0 && parts[0].end == parts[1].start && parts[2].end == u32::MAX);
+        assert_eq!(range("3..5"), Ok(3..5));
+        assert!(range("5..3").is_err() && range("5").is_err());
     }
 
     #[test]

@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod args;
+mod checkpoint;
 mod command;
 mod diagnostics;
 mod exit;
@@ -28,7 +29,9 @@ fn main() -> ExitCode {
         Command::Render(args) => (args.loudness, args.json),
         Command::Info(args) => (args.loudness, false),
         Command::Gallery(args) => (args.loudness, false),
-        Command::List(_) | Command::Diff(_) | Command::Bench(_) => (Loudness::default(), false),
+        Command::List(_) | Command::Merge(_) | Command::Diff(_) | Command::Bench(_) => {
+            (Loudness::default(), false)
+        }
     };
     log::start(loudness, json);
     let painter = if json { Painter::Json } else { Painter::for_terminal() };
@@ -36,6 +39,7 @@ fn main() -> ExitCode {
         Command::Render(args) => command::render::run(args, &painter),
         Command::Info(args) => command::info::run(args, &painter),
         Command::List(args) => command::list::run(args),
+        Command::Merge(args) => command::merge::run(args),
         Command::Diff(args) => command::diff::run(args),
         Command::Gallery(args) => command::gallery::run(args, &painter),
         Command::Bench(args) => command::bench::run(args).map(|()| exit::Exit::Done),

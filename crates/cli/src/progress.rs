@@ -4,9 +4,12 @@ use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use aureole::render::{Observer, Progress};
+use aureole::render::{Film, Observer, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::checkpoint::Checkpoint;
+use crate::diagnostics::Painter;
+use crate::exit::Failure;
 use crate::signals::Signals;
 
 /// Milliseconds between two updates of the bar, and between two lines for programs.
@@ -26,9 +29,11 @@ pub(crate) enum Show {
     Lines,
 }
 
-/// Shows a render's progress and lets signals end it.
-pub(crate) struct Watch {
+/// Shows a render's progress, keeps checkpoints, and lets signals end it.
+pub(crate) struct Watch<'a> {
     signals: Signals,
+    checkpoint: Option<&'a Checkpoint>,
+    painter: &'a Painter,
     bar: Option<ProgressBar>,
     lines: bool,
     /// When a time limit decides rather than the number of samples.
@@ -36,16 +41,23 @@ pub(crate) struct Watch {
     last_update: AtomicU64,
 }
 
-impl Watch {
+impl<'a> Watch<'a> {
     /// Watches for signals; shows progress as wanted.
-    pub(crate) fn new(signals: Signals, show: Show, time: Option<Duration>) -> Self {
+    pub(crate) fn new(
+        signals: Signals,
+        show: Show,
+        time: Option<Duration>,
+        checkpoint: Option<&'a Checkpoint>,
+        painter: &'a Painter,
+    ) -> Self {
         let bar = (show == Show::Bar && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
             let style = ProgressStyle::with_template("{bar:30.cyan/dim} {percent:>3} %  {msg}");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("━━─"));
             bar
         });
-        Self { signals, bar, lines: show == Show::Lines, time, last_update: AtomicU64::new(0) }
+        let lines = show == Show::Lines;
+        Self { signals, checkpoint, painter, bar, lines, time, last_update: AtomicU64::new(0) }
     }
 
     /// Takes the line away.
@@ -62,7 +74,7 @@ impl Watch {
     }
 }
 
-impl Observer for Watch {
+impl Observer for Watch<'_> {
     fn progress(&self, progress: &Progress) {
         let interval = match (&self.bar, self.lines) {
             (Some(_), _) => BAR_INTERVAL,
@@ -103,6 +115,18 @@ impl Observer for Watch {
 
     fn should_stop(&self) -> bool {
         self.signals.received().is_some()
+    }
+
+    fn wants_film(&self) -> bool {
+        self.checkpoint.is_some_and(Checkpoint::claim)
+    }
+
+    fn film(&self, film: Film) {
+        // Trouble now may be over when the next one is due; the render is worth more.
+        if let Some(Err(Failure::Plain { message, .. })) = self.checkpoint.map(|file| file.write(film)) {
+            let help = "the render goes on, and so does the last checkpoint's file";
+            self.painter.warning(&message, Some(help));
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use aureole::desc::{Limits, Report, SceneDesc, SceneError, Sources, Span, Value};
 use aureole::formats::{GALLERY, GalleryScene, LoadOptions, load};
-use aureole::render::MemoryEstimate;
+use aureole::render::{Fingerprint, MemoryEstimate, RenderOptions};
 use aureole::scene::{CompileOptions, Film, Scene, compile};
 use miette::Severity;
 
@@ -31,6 +31,8 @@ pub(crate) struct Session {
     pub sources: Sources,
     /// The memory that it was expected to take, with its render.
     pub estimate: MemoryEstimate,
+    /// What tells its films from others, if that was asked for.
+    pub fingerprint: Option<Fingerprint>,
     /// Seconds spent on reading.
     pub load_seconds: f64,
     /// Seconds spent on building.
@@ -105,8 +107,18 @@ impl From<SceneError> for Problem {
 /// # Errors
 /// [`Failure::Shown`] with the exit code; also for warnings, if they count as errors.
 pub(crate) fn open(args: &SceneArgs, loudness: Loudness, painter: &Painter) -> Result<Session, Failure> {
+    open_for_films(args, None, loudness, painter)
+}
+
+/// As [`open`], and takes the fingerprint of what will be rendered with some options.
+pub(crate) fn open_for_films(
+    args: &SceneArgs,
+    films_of: Option<&RenderOptions>,
+    loudness: Loudness,
+    painter: &Painter,
+) -> Result<Session, Failure> {
     let (mut sources, mut report) = (Sources::default(), Report::default());
-    let session = read_and_compile(args, &mut sources, &mut report);
+    let session = read_and_compile(args, films_of, &mut sources, &mut report);
     let show_all = loudness.verbose > 0;
     let is_strict = args.strict && !report.warnings.is_empty();
     if is_strict || !loudness.quiet {
@@ -132,6 +144,7 @@ pub(crate) fn open(args: &SceneArgs, loudness: Loudness, painter: &Painter) -> R
 
 fn read_and_compile(
     args: &SceneArgs,
+    films_of: Option<&RenderOptions>,
     sources: &mut Sources,
     report: &mut Report,
 ) -> Result<Session, Problem> {
@@ -155,12 +168,14 @@ fn read_and_compile(
     let options = CompileOptions { camera: args.camera, limits, ..CompileOptions::default() };
     let scene = compile(&desc, &options, report)?;
     aureole::render::integrator::check_parameters(&scene, report);
+    let fingerprint = films_of.map(|options| Fingerprint::new(&desc, &film, args.camera, options));
     desc.release_bulk();
     let build_seconds = start.elapsed().as_secs_f64();
     tracing::info!(load_seconds, build_seconds, "scene ready");
     // The caller's come in their places.
     let (report, sources) = (Report::default(), Sources::default());
-    Ok(Session { desc, scene, report, sources, estimate, load_seconds, build_seconds, stem: origin.stem() })
+    let stem = origin.stem();
+    Ok(Session { desc, scene, report, sources, estimate, fingerprint, load_seconds, build_seconds, stem })
 }
 
 /// Refuses what would be killed later.

@@ -31,8 +31,8 @@ pub use crate::image::{Image, Window};
 pub use atomic::write_atomically;
 pub use bitmap::Bitmap;
 pub use codec::{
-    BitDepth, Format, Precision, Probe, WriteOptions, decode_bitmap, decode_image, encode, probe_image,
-    read_bitmap, read_image, write_image,
+    BitDepth, Format, Plane, Planes, Precision, Probe, WriteOptions, decode_bitmap, decode_image, encode,
+    probe_image, read_bitmap, read_image, write_image,
 };
 pub use encoding::Encoding;
 pub use error::ImageError;

@@ -17,12 +17,20 @@
 #![forbid(unsafe_code)]
 
 mod film;
+mod film_file;
+mod fingerprint;
 pub mod integrator;
 mod memory;
+mod merge;
 mod render;
 pub mod replay;
 
-pub use film::{ExactSum, FilmTile};
+pub use film::{ExactSum, Film};
+pub use film_file::{FilmError, FilmFile};
+pub use fingerprint::Fingerprint;
 pub use integrator::{Integrator, IntegratorManual, integrators};
 pub use memory::MemoryEstimate;
-pub use render::{Observer, Progress, RenderOptions, RenderStats, Rendered, SampleId, Silent, render};
+pub use merge::{MergeError, Merger};
+pub use render::{
+    Observer, Progress, RenderOptions, RenderStats, Rendered, SampleId, Silent, render, resume,
+};

@@ -10,7 +10,7 @@ use aureole_desc::{Family, Limits, Mesh, SceneDesc, Value};
 use aureole_image::{Probe, probe_image};
 use rustc_hash::FxHashSet;
 
-use crate::film::FilmTile;
+use crate::film::Film;
 
 /// The program itself, its tables and the state of its workers.
 const BASE: u64 = 12 << 20;
@@ -20,6 +20,8 @@ const ACCEL_TRIANGLE: u64 = 62;
 const BUILD_TRIANGLE: u64 = 60;
 /// Bytes of any other shape or instance, with its boxes.
 const OTHER_SHAPE: u64 = 1024;
+/// The film is kept in tiles, and copied where it is looked at: for a checkpoint, for the image.
+const FILM_COPIES: u64 = 2;
 /// Bytes of a pixel of the finished image: three floats.
 const OUTPUT_PIXEL: u64 = 3 * 4;
 
@@ -45,7 +47,7 @@ impl MemoryEstimate {
     /// limits are not counted: they will be refused.
     pub fn new(desc: &SceneDesc, width: u32, height: u32, limits: &Limits) -> Self {
         let pixels = u64::from(width) * u64::from(height);
-        let film = pixels * (FilmTile::BYTES_PER_PIXEL as u64 + OUTPUT_PIXEL);
+        let film = pixels * (FILM_COPIES * Film::BYTES_PER_PIXEL as u64 + OUTPUT_PIXEL);
         let mut estimate = Self { film, ..Self::default() };
         let mut shared: FxHashSet<*const Mesh> = FxHashSet::default();
         let mut pictures: FxHashSet<&Path> = FxHashSet::default();

@@ -1,21 +1,22 @@
 //! The loop over passes and tiles.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use aureole_desc::SceneError;
 use aureole_elements::camera::CameraSample;
 use aureole_elements::sampler::SampleKey;
-use aureole_image::{Image, Window};
+use aureole_image::Image;
 use aureole_math::{Point2, Vector2};
 use aureole_scene::{Crop, Scene};
 use aureole_spectrum::Spectrum;
 
-use crate::film::FilmTile;
+use crate::film::{Film, FilmTile};
 use crate::integrator::{self, Batch, FIRST_FREE_DIMENSION, Integrator, PathStart};
 
-/// Side of a tile in pixels.
+/// Side of a tile in pixels, unless another is wanted.
 const TILE: u32 = 16;
 /// Paths that a worker advances together: their state fits into a second-level cache.
 const BATCH: usize = 1024;
@@ -31,8 +32,12 @@ pub struct RenderOptions {
     pub time: Option<Duration>,
     /// Another seed draws other samples.
     pub seed: u64,
+    /// Only these samples of every pixel, counted from zero, instead of the first `spp`.
+    pub samples: Option<Range<u32>>,
     /// Threads; all processors when zero.
     pub threads: usize,
+    /// Side of the tiles that threads work on, in pixels; 16 when zero. It does not change the image.
+    pub tile: u32,
     /// Another integrator than the scene's, by name.
     pub integrator: Option<String>,
 }
@@ -59,6 +64,15 @@ pub trait Observer: Sync {
     fn should_stop(&self) -> bool {
         false
     }
+
+    /// Whether to show the film as it is now. Asked after every tile; the thread that hears yes calls
+    /// [`film`](Self::film), while the others go on.
+    fn wants_film(&self) -> bool {
+        false
+    }
+
+    /// Shows the film. Every pixel is whole, but some have more samples than others.
+    fn film(&self, _film: Film) {}
 }
 
 /// An observer that does nothing.
@@ -72,6 +86,8 @@ impl Observer for Silent {}
 pub struct Rendered {
     /// Linear Rec. 709 in channels R, G, B.
     pub image: Image,
+    /// The sums that it was made from: what [`resume`] goes on with.
+    pub film: Film,
     /// Figures.
     pub stats: RenderStats,
 }
@@ -79,15 +95,15 @@ pub struct Rendered {
 /// Figures of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RenderStats {
-    /// Samples drawn.
+    /// Samples drawn, without those that a resumed film already had.
     pub samples: u64,
     /// Rays traced, shadow rays included.
     pub rays: u64,
     /// Time spent.
     pub seconds: f64,
-    /// Samples that were not finite and left out.
+    /// Samples of the film that were not finite and left out.
     pub non_finite: u64,
-    /// The first of them, by row, column and index: the same for any number of threads.
+    /// The first of them that was drawn now, by row, column and index: the same for any number of threads.
     pub first_non_finite: Option<SampleId>,
     /// Whether all samples that were asked for were drawn.
     pub complete: bool,
@@ -115,16 +131,39 @@ pub fn render(
     options: &RenderOptions,
     observer: &dyn Observer,
 ) -> Result<Rendered, SceneError> {
+    resume(scene, options, Film::new(scene.film, options.samples(scene).start), observer)
+}
+
+/// Goes on with a film, such as one that was interrupted or should have more samples.
+///
+/// The image has the bits of a render that was never interrupted. The film must be of the same scene and seed, which only
+/// the caller can know; see [`Fingerprint`](crate::Fingerprint).
+///
+/// # Errors
+/// As [`render`], and for a film of another size or of other samples.
+pub fn resume(
+    scene: &Scene,
+    options: &RenderOptions,
+    film: Film,
+    observer: &dyn Observer,
+) -> Result<Rendered, SceneError> {
     let integrator = integrator::build(scene, options.integrator.as_deref())?;
+    let samples = options.samples(scene);
+    if film.shape() != scene.film || film.first != samples.start {
+        let message = "the film is not one of this image and these samples";
+        return Err(SceneError::invalid(message, aureole_desc::Span::NONE));
+    }
     let job = Job {
         scene,
         integrator: &*integrator,
         observer,
-        spp: options.spp.unwrap_or_else(|| scene.sampler.sample_count()),
+        samples,
+        tile: if options.tile == 0 { TILE } else { options.tile },
         seed: options.seed,
         start: Instant::now(),
         limit: options.time,
-        samples: AtomicU64::new(0),
+        drawn_before: film.samples(),
+        drawn: AtomicU64::new(0),
         rays: AtomicU64::new(0),
         first_non_finite: Mutex::new(None),
         stopped: AtomicBool::new(false),
@@ -133,7 +172,15 @@ pub fn render(
         0 => std::thread::available_parallelism().map_or(1, usize::from),
         n => n,
     };
-    Ok(job.run(threads.min(256)))
+    Ok(job.run(film, threads.min(256)))
+}
+
+impl RenderOptions {
+    /// The samples that every pixel gets.
+    pub fn samples(&self, scene: &Scene) -> Range<u32> {
+        let all = 0..self.spp.unwrap_or_else(|| scene.sampler.sample_count());
+        self.samples.clone().unwrap_or(all)
+    }
 }
 
 /// A render at work.
@@ -141,30 +188,38 @@ struct Job<'a> {
     scene: &'a Scene,
     integrator: &'a dyn Integrator,
     observer: &'a dyn Observer,
-    spp: u32,
+    samples: Range<u32>,
+    tile: u32,
     seed: u64,
     start: Instant,
     limit: Option<Duration>,
-    samples: AtomicU64,
+    /// Samples that a resumed film came with.
+    drawn_before: u64,
+    drawn: AtomicU64,
     rays: AtomicU64,
     first_non_finite: Mutex<Option<SampleId>>,
     stopped: AtomicBool,
 }
 
+/// The film while it is worked on.
+type Tiles = [Mutex<FilmTile>];
+
 impl Job<'_> {
-    fn run(&self, threads: usize) -> Rendered {
-        let tiles: Vec<Mutex<FilmTile>> =
-            tiles(&self.scene.film.crop).map(|area| Mutex::new(FilmTile::new(area))).collect();
-        let mut first = 0;
-        while first < self.spp && !self.stopped.load(Ordering::Relaxed) {
+    fn run(&self, film: Film, threads: usize) -> Rendered {
+        let areas = tiles(&self.scene.film.crop, self.tile);
+        let tiles: Vec<Mutex<FilmTile>> = areas.map(|area| Mutex::new(film.tile(area))).collect();
+        let [least, _] = film.drawn();
+        drop(film);
+        let mut first = self.samples.start.saturating_add(least);
+        while first < self.samples.end && !self.stopped.load(Ordering::Relaxed) {
             // Passes grow, so that a first impression comes quickly.
-            let count = first.clamp(1, MAX_PASS).min(self.spp - first);
+            let count = (first - self.samples.start).clamp(1, MAX_PASS).min(self.samples.end - first);
             let next_tile = AtomicUsize::new(0);
             std::thread::scope(|scope| {
                 for _ in 1..threads {
-                    scope.spawn(|| self.work(&tiles, &next_tile, first, count));
+                    scope.spawn(|| self.work(&tiles, &next_tile, first..first + count));
                 }
-                self.work(&tiles, &next_tile, first, count);
+                self.work(&tiles, &next_tile, first..first + count);
             });
             first += count;
             tracing::debug!(
@@ -174,37 +229,49 @@ impl Job<'_> {
             );
         }
         self.report();
-        self.finish(tiles)
+        self.finish(self.film(&tiles))
     }
 
     /// One thread's part of a pass.
-    fn work(&self, tiles: &[Mutex<FilmTile>], next_tile: &AtomicUsize, first: u32, count: u32) {
+    fn work(&self, tiles: &Tiles, next_tile: &AtomicUsize, pass: Range<u32>) {
         let mut worker = Worker::default();
         while !self.stopped.load(Ordering::Relaxed) {
             let Some(tile) = tiles.get(next_tile.fetch_add(1, Ordering::Relaxed)) else { break };
-            // Each tile is taken once in a pass, so nobody waits here.
-            let mut tile = tile.lock().unwrap_or_else(PoisonError::into_inner);
-            self.render_tile(&mut worker, &mut tile, first, count);
+            // Each tile is taken once in a pass, so nobody waits here, but for somebody who copies it.
+            self.render_tile(&mut worker, &mut lock(tile), pass.clone());
             self.report();
             let is_late = self.limit.is_some_and(|limit| self.start.elapsed() >= limit);
             if is_late || self.observer.should_stop() {
                 self.stopped.store(true, Ordering::Relaxed);
+            } else if self.observer.wants_film() {
+                self.observer.film(self.film(tiles));
             }
         }
     }
 
-    fn render_tile(&self, worker: &mut Worker, tile: &mut FilmTile, first: u32, count: u32) {
-        let pixels = tile.area.width * tile.area.height;
-        let per_batch = (BATCH as u32 / pixels).max(1);
-        let mut sample = first;
-        while sample < first + count {
-            let n = per_batch.min(first + count - sample);
+    /// The film as it is now. Tiles come one after the other, each between two passes over it.
+    fn film(&self, tiles: &Tiles) -> Film {
+        let mut film = Film::new(self.scene.film, self.samples.start);
+        tiles.iter().for_each(|tile| film.put(&lock(tile)));
+        film
+    }
+
+    /// Draws those samples of a pass that the tile does not have yet.
+    fn render_tile(&self, worker: &mut Worker, tile: &mut FilmTile, pass: Range<u32>) {
+        let area = tile.area;
+        let per_batch = (BATCH as u32 / (area.width * area.height)).max(1);
+        let mut sample = pass.start;
+        while sample < pass.end {
+            let end = pass.end.min(sample.saturating_add(per_batch));
             worker.clear();
-            for s in sample..sample + n {
-                for y in 0..tile.area.height {
-                    for x in 0..tile.area.width {
-                        let id = SampleId { x: tile.area.x + x, y: tile.area.y + y, sample: s };
-                        worker.push(start_path(self.scene, self.seed, id));
+            for s in sample..end {
+                for y in 0..area.height {
+                    for x in 0..area.width {
+                        // A resumed film may have been stopped, or tiled, anywhere.
+                        if tile.drawn(x, y) <= s - self.samples.start {
+                            let id = SampleId { x: area.x + x, y: area.y + y, sample: s };
+                            worker.push(id, start_path(self.scene, self.seed, id));
+                        }
                     }
                 }
             }
@@ -212,70 +279,50 @@ impl Job<'_> {
             worker.radiance.resize(worker.starts.len(), Spectrum::ZERO);
             let rays = worker.batch.trace(self.integrator, self.scene, &worker.starts, &mut worker.radiance);
             for (i, radiance) in worker.radiance.iter().enumerate() {
-                let place = i as u32 % pixels;
-                let (x, y) = (place % tile.area.width, place / tile.area.width);
-                if !tile.add(x, y, *radiance, worker.weights[i]) {
-                    let id = SampleId {
-                        x: tile.area.x + x,
-                        y: tile.area.y + y,
-                        sample: sample + i as u32 / pixels,
-                    };
+                let id = worker.ids[i];
+                if !tile.add(id.x - area.x, id.y - area.y, *radiance, worker.weights[i]) {
                     self.note_non_finite(id);
                 }
             }
-            self.samples.fetch_add(worker.starts.len() as u64, Ordering::Relaxed);
+            self.drawn.fetch_add(worker.starts.len() as u64, Ordering::Relaxed);
             self.rays.fetch_add(rays, Ordering::Relaxed);
-            sample += n;
+            sample = end;
         }
     }
 
     /// Keeps the first of all samples that are not finite.
     #[cold]
     fn note_non_finite(&self, id: SampleId) {
-        let mut first = self.first_non_finite.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut first = lock(&self.first_non_finite);
         *first = Some(first.map_or(id, |first| first.min(id)));
     }
 
     fn report(&self) {
         let crop = self.scene.film.crop;
         self.observer.progress(&Progress {
-            samples_done: self.samples.load(Ordering::Relaxed),
-            samples_total: u64::from(crop.width) * u64::from(crop.height) * u64::from(self.spp),
+            samples_done: self.drawn.load(Ordering::Relaxed) + self.drawn_before,
+            samples_total: u64::from(crop.width) * u64::from(crop.height) * self.samples.len() as u64,
             rays: self.rays.load(Ordering::Relaxed),
             elapsed: self.start.elapsed(),
         });
     }
 
-    fn finish(&self, tiles: Vec<Mutex<FilmTile>>) -> Rendered {
-        let crop = self.scene.film.crop;
-        let mut image = Image::new(crop.width as usize, crop.height as usize, &["R", "G", "B"]);
-        let full = self.scene.film.full;
-        let whole = Crop { x: 0, y: 0, width: full.width, height: full.height };
-        image.window = (crop != whole).then_some(Window {
-            x: crop.x as i32,
-            y: crop.y as i32,
-            full_width: full.width as usize,
-            full_height: full.height as usize,
-        });
-        let mut non_finite = 0;
-        for tile in tiles {
-            let tile = tile.into_inner().unwrap_or_else(PoisonError::into_inner);
-            non_finite += tile.dropped;
-            for y in 0..tile.area.height {
-                for x in 0..tile.area.width {
-                    let (column, row) = (tile.area.x - crop.x + x, tile.area.y - crop.y + y);
-                    image.pixel_mut(column as usize, row as usize).copy_from_slice(&tile.rgb(x, y));
-                }
-            }
-        }
-        let samples = self.samples.load(Ordering::Relaxed);
-        let complete = !self.stopped.load(Ordering::Relaxed);
-        let rays = self.rays.load(Ordering::Relaxed);
-        let seconds = self.start.elapsed().as_secs_f64();
-        let first_non_finite = *self.first_non_finite.lock().unwrap_or_else(PoisonError::into_inner);
-        let stats = RenderStats { samples, rays, seconds, non_finite, first_non_finite, complete };
-        Rendered { image, stats }
+    fn finish(&self, film: Film) -> Rendered {
+        let stats = RenderStats {
+            samples: self.drawn.load(Ordering::Relaxed),
+            rays: self.rays.load(Ordering::Relaxed),
+            seconds: self.start.elapsed().as_secs_f64(),
+            non_finite: film.dropped(),
+            first_non_finite: *lock(&self.first_non_finite),
+            complete: film.drawn()[0] as usize >= self.samples.len(),
+        };
+        Rendered { image: film.image(), film, stats }
     }
+}
+
+/// What panics elsewhere is no reason to panic here.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The camera ray of a sample, and its weight from the filter.
@@ -294,6 +341,7 @@ pub(crate) fn start_path(scene: &Scene, seed: u64, id: SampleId) -> (PathStart, 
 /// A thread's memory, kept from batch to batch.
 #[derive(Default)]
 struct Worker {
+    ids: Vec<SampleId>,
     starts: Vec<PathStart>,
     weights: Vec<f32>,
     radiance: Vec<Spectrum>,
@@ -302,26 +350,28 @@ struct Worker {
 
 impl Worker {
     fn clear(&mut self) {
+        self.ids.clear();
         self.starts.clear();
         self.weights.clear();
     }
 
     #[inline]
-    fn push(&mut self, (start, weight): (PathStart, f32)) {
+    fn push(&mut self, id: SampleId, (start, weight): (PathStart, f32)) {
+        self.ids.push(id);
         self.starts.push(start);
         self.weights.push(weight);
     }
 }
 
 /// The tiles of an area, row by row.
-fn tiles(area: &Crop) -> impl Iterator<Item = Crop> {
+fn tiles(area: &Crop, side: u32) -> impl Iterator<Item = Crop> {
     let Crop { x, y, width, height } = *area;
-    (0..height).step_by(TILE as usize).flat_map(move |dy| {
-        (0..width).step_by(TILE as usize).map(move |dx| Crop {
+    (0..height).step_by(side as usize).flat_map(move |dy| {
+        (0..width).step_by(side as usize).map(move |dx| Crop {
             x: x + dx,
             y: y + dy,
-            width: TILE.min(width - dx),
-            height: TILE.min(height - dy),
+            width: side.min(width - dx),
+            height: side.min(height - dy),
         })
     })
 }

@@ -6,6 +6,7 @@ pub(crate) mod diff;
 pub(crate) mod gallery;
 pub(crate) mod info;
 pub(crate) mod list;
+pub(crate) mod merge;
 pub(crate) mod render;
 
 use serde::Serialize;

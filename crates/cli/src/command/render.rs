@@ -1,13 +1,15 @@
 //! `aureole render`: from a scene file to an image.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
-use aureole::image::{ToneMapping, WriteOptions};
-use aureole::render::{RenderOptions, RenderStats, Rendered, render};
+use aureole::image::{Image, ToneMapping, WriteOptions};
+use aureole::render::{Film, RenderOptions, RenderStats, resume};
 use serde::Serialize;
 
 use super::debug_pixel;
 use crate::args::{Color, RenderArgs, StatsFormat};
+use crate::checkpoint::{Checkpoint, Identity};
 use crate::diagnostics::Painter;
 use crate::exit::{self, Exit, Failure};
 use crate::memory;
@@ -37,35 +39,104 @@ pub(crate) fn run(args: &RenderArgs, painter: &Painter) -> Result<Exit, Failure>
     let output = check(args)?;
     let signals = Signals::listen();
     limit_threads(args.threads);
-    let session = session::open(&args.scene, args.loudness, painter)?;
+    let mut options = render_options(args);
+    let films_of = (args.checkpoint.is_some() || is_part(args)).then_some(&options);
+    let session = session::open_for_films(&args.scene, films_of, args.loudness, painter)?;
     if let Some(pixel) = args.debug_pixel {
-        return debug_pixel::run(&session, &render_options(args), pixel);
+        return debug_pixel::run(&session, &options, pixel);
     }
+    let (samples, spp) = samples(args, &options, &session)?;
     let output = match output {
         Some(output) => output,
-        None => default_output(&session)?,
+        None => default_output(&session, is_part(args).then_some(&samples))?,
     };
     if args.loudness.verbose > 0 && !args.json {
         describe(&session);
     }
+    let identity = session.fingerprint.clone().map(|fingerprint| Identity {
+        fingerprint,
+        samples: samples.clone(),
+        spp,
+    });
+    let checkpoint = args.checkpoint.clone().zip(identity.clone());
+    let checkpoint = checkpoint.map(|(path, identity)| Checkpoint::new(path, args.every, identity));
+    let film = begin(args, &session, samples.start, checkpoint.as_ref())?;
+    options.samples = Some(samples);
 
     let show = match (args.json, args.loudness.quiet) {
         (true, _) => Show::Lines,
         (false, true) => Show::Nothing,
         (false, false) => Show::Bar,
     };
-    let watch = Watch::new(signals.clone(), show, args.time);
-    let rendered = render(&session.scene, &render_options(args), &watch);
+    let watch = Watch::new(signals.clone(), show, args.time, checkpoint.as_ref(), painter);
+    let rendered = resume(&session.scene, &options, film, &watch);
     watch.finish();
     let mut rendered = rendered.map_err(|error| {
         painter.error(&error.to_string(), error.help().as_deref());
         Failure::Shown(exit::of_scene_error(&error))
     })?;
 
-    annotate(&mut rendered, args.seed);
-    output.write(&rendered.image, &write_options(args))?;
+    // The image is written even where the checkpoint cannot be, and the failure told afterwards.
+    let kept = checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.write(rendered.film.clone()));
+    match (&output, identity) {
+        (Output::File(path), Some(identity)) if is_part(args) => identity.write(rendered.film, path)?,
+        _ => {
+            annotate(&mut rendered.image, args.seed, &rendered.film);
+            output.write(&rendered.image, &write_options(args))?;
+        }
+    }
+    kept?;
     tell(args, painter, &session, &rendered.stats, &output)?;
     Ok(signals.received().unwrap_or(Exit::Done))
+}
+
+/// Whether a part of the samples is rendered, to a film instead of an image.
+fn is_part(args: &RenderArgs) -> bool {
+    args.shard.is_some() || args.samples.is_some()
+}
+
+/// The samples to draw of every pixel, and the number of those of the whole.
+fn samples(
+    args: &RenderArgs,
+    options: &RenderOptions,
+    session: &Session,
+) -> Result<(Range<u32>, u32), Failure> {
+    let whole = options.samples(&session.scene);
+    let spp = whole.end;
+    let samples = match (args.shard, &args.samples) {
+        (Some(shard), _) => shard.of(spp),
+        (None, Some(samples)) => samples.clone(),
+        (None, None) => whole,
+    };
+    if samples.is_empty() || samples.end > spp {
+        let message = match args.shard {
+            Some(shard) => format!("{spp} samples a pixel cannot be shared by {} parts", shard.count),
+            None => format!("samples {}..{} are beyond {spp}", samples.start, samples.end),
+        };
+        return Err(Failure::usage(message).with_help("`--spp` is the number of samples of the whole"));
+    }
+    Ok((samples, spp))
+}
+
+/// The film to begin with: the checkpoint's, or an empty one.
+fn begin(
+    args: &RenderArgs,
+    session: &Session,
+    first: u32,
+    checkpoint: Option<&Checkpoint>,
+) -> Result<Film, Failure> {
+    let shape = session.scene.film;
+    let Some(checkpoint) = checkpoint.filter(|_| args.resume) else { return Ok(Film::new(shape, first)) };
+    let film = checkpoint.film(shape)?;
+    let path = checkpoint.path().display();
+    let told = match &film {
+        Some(film) => format!("going on from `{path}`, at {} samples a pixel\n", film.drawn()[0]),
+        None => format!("`{path}` does not exist yet: starting anew\n"),
+    };
+    if !args.loudness.quiet && !args.json {
+        eprint(&told);
+    }
+    Ok(film.unwrap_or_else(|| Film::new(shape, first)))
 }
 
 /// Finds what is wrong with the command line before any work is done. Without `-o`, the output is known only later.
@@ -82,12 +153,33 @@ fn check(args: &RenderArgs) -> Result<Option<Output>, Failure> {
         return Err(Failure::usage("`--format` is for `-o -`"));
     }
     output.iter().try_for_each(Output::check)?;
+    if is_part(args) {
+        check_part(args, output.as_ref())?;
+    }
+    if let Some(path) = &args.checkpoint {
+        Checkpoint::check(path, args.resume)?;
+    }
     Ok(output)
 }
 
+/// A part's film needs a format that keeps it, and says how many samples there are.
+fn check_part(args: &RenderArgs, output: Option<&Output>) -> Result<(), Failure> {
+    let is_exr = |path: &PathBuf| path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("exr"));
+    if !output.is_none_or(|output| matches!(output, Output::File(path) if is_exr(path))) {
+        return Err(Failure::usage("a part of a render is kept in a film: name an `.exr` file with `-o`"));
+    }
+    if args.time.is_some() {
+        return Err(Failure::usage("parts of a render are made of samples, not of time"));
+    }
+    Ok(())
+}
+
 /// The file that the scene names, else one named after the scene.
-fn default_output(session: &Session) -> Result<Output, Failure> {
-    let path = session.film_filename().unwrap_or_else(|| PathBuf::from(format!("{}.png", session.stem)));
+fn default_output(session: &Session, part: Option<&Range<u32>>) -> Result<Output, Failure> {
+    let path = match part {
+        Some(samples) => PathBuf::from(format!("{}.{}-{}.exr", session.stem, samples.start, samples.end)),
+        None => session.film_filename().unwrap_or_else(|| PathBuf::from(format!("{}.png", session.stem))),
+    };
     let output = Output::File(path);
     output.check().map_err(|failure| failure.with_help("name another file with `-o`"))?;
     Ok(output)
@@ -105,8 +197,10 @@ fn render_options(args: &RenderArgs) -> RenderOptions {
     RenderOptions {
         spp,
         time: args.time,
+        samples: None,
         seed: args.seed,
         threads: args.threads,
+        tile: args.tile,
         integrator: args.integrator.clone(),
     }
 }
@@ -117,12 +211,12 @@ fn write_options(args: &RenderArgs) -> WriteOptions {
 }
 
 /// Notes in the image what made it; nothing that differs from run to run.
-fn annotate(rendered: &mut Rendered, seed: u64) {
-    let pixels = (rendered.image.width() * rendered.image.height()).max(1) as u64;
-    let metadata = &mut rendered.image.metadata;
+pub(super) fn annotate(image: &mut Image, seed: impl ToString, film: &Film) {
+    let pixels = (image.width() * image.height()).max(1) as u64;
+    let metadata = &mut image.metadata;
     metadata.insert("software".into(), concat!("Aureole ", env!("CARGO_PKG_VERSION")).into());
     metadata.insert("seed".into(), seed.to_string().into());
-    metadata.insert("samplesPerPixel".into(), ((rendered.stats.samples / pixels) as i32).into());
+    metadata.insert("samplesPerPixel".into(), ((film.samples() / pixels) as i32).into());
 }
 
 /// With `-v`: what was read and how long it took.

@@ -5,5 +5,6 @@ mod errors;
 #[expect(clippy::unwrap_used, reason = "a test without its files cannot go on")]
 mod fixture;
 mod hostile;
+mod long;
 mod render;
 mod trust;

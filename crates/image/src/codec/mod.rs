@@ -15,6 +15,7 @@ use std::io::{self, Read};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
+pub use exr::{Plane, Planes};
 pub use format::Format;
 pub use probe::{Probe, probe_image};
 

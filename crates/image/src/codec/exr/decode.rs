@@ -2,6 +2,7 @@
 
 use std::io::Cursor;
 
+use exr::block::reader::Reader;
 use exr::block::{UncompressedBlock, read};
 use exr::meta::attribute::SampleType;
 use exr::meta::header::Header;
@@ -20,19 +21,31 @@ const BATCH: usize = 64;
 pub(in super::super) fn decode(bytes: &[u8], limits: &ImageLimits) -> Result<Raster, Fault> {
     let reader = read(Cursor::new(bytes), false).map_err(Fault::content)?;
     let plan = Plan::new(reader.headers(), bytes.len(), limits)?;
+    let mut texels = plan.texels();
+    each_block(reader, |header, block| match &mut texels {
+        Texels::Halves(data) => plan.place(header, block, data, Half::from_sample),
+        Texels::Floats(data) => plan.place(header, block, data, f32::from_sample),
+        Texels::Bytes(_) | Texels::Words(_) => Ok(()),
+    })?;
+    Ok(plan.finish(texels, bytes))
+}
+
+/// Unpacks a file's blocks of full resolution and hands them on in the file's order.
+pub(super) fn each_block(
+    reader: Reader<Cursor<&[u8]>>,
+    mut take: impl FnMut(&Header, &UncompressedBlock) -> Result<(), Fault>,
+) -> Result<(), Fault> {
     let meta = reader.meta_data().clone();
     let chunks: Vec<_> = reader
         .filter_chunks(false, |_, tile, _| tile.is_largest_resolution_level())
         .map_err(Fault::content)?
         .collect::<Result<_, _>>()
         .map_err(Fault::content)?;
-
-    let mut texels = plan.texels();
     let mut chunks = chunks.into_iter();
     loop {
         let batch: Vec<_> = chunks.by_ref().take(BATCH).collect();
         if batch.is_empty() {
-            break;
+            return Ok(());
         }
         // The crate's own parallel reader would abort the process where a decoder panics.
         let blocks: Vec<UncompressedBlock> = batch
@@ -42,14 +55,9 @@ pub(in super::super) fn decode(bytes: &[u8], limits: &ImageLimits) -> Result<Ras
             .map_err(Fault::content)?;
         for block in &blocks {
             let header = meta.headers.get(block.index.layer).ok_or_else(|| Fault::content("wrong part"))?;
-            match &mut texels {
-                Texels::Halves(data) => plan.place(header, block, data, Half::from_sample)?,
-                Texels::Floats(data) => plan.place(header, block, data, f32::from_sample)?,
-                Texels::Bytes(_) | Texels::Words(_) => {}
-            }
+            take(header, block)?;
         }
     }
-    Ok(plan.finish(texels, bytes))
 }
 
 /// Where every part's channels go in the interleaved image.
