@@ -124,7 +124,7 @@ impl Observer for Watch<'_> {
     fn film(&self, film: Film) {
         // Trouble now may be over when the next one is due; the render is worth more.
         if let Some(Err(Failure::Plain { message, .. })) = self.checkpoint.map(|file| file.write(film)) {
-            let help = "the render goes on, and so does the last checkpoint's file";
+            let help = "the render goes on, and the last checkpoint is as it was";
             self.painter.warning(&message, Some(help));
         }
     }
