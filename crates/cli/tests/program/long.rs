@@ -1,5 +1,7 @@
 //! Long renders: checkpoints, resuming, parts and their merging, the same bits every time.
 
+use std::path::Path;
+
 use crate::fixture::Program;
 
 /// Renders the ball in parts, `i.exr` each.
@@ -174,20 +176,41 @@ fn a_full_disk_leaves_the_old_checkpoint() {
     assert_eq!(program.read("four.exr"), program.read("whole.exr"));
 }
 
+/// Renders a scene with other threads and tiles, which must not show.
+fn check_repeatability(program: &Program, scene: &str) {
+    let render = |options: &str| {
+        program.ok(&format!("render {scene} --resolution 24x20 --spp 3 -q -o a.exr {options}"));
+        program.read("a.exr")
+    };
+    let first = render("--threads 1");
+    for options in
+        ["--threads 2", "--threads 3", "--threads 8", "--threads 2 --tile 7", "--threads 8 --tile 64"]
+    {
+        assert_eq!(render(options), first, "{scene} {options}");
+    }
+}
+
 #[test]
-fn threads_tiles_and_repetition_change_no_bit_of_the_gallery() {
+fn threads_and_tiles_change_no_bit_of_the_gallery() {
+    let program = Program::new();
     for scene in aureole::formats::GALLERY {
-        let program = Program::new();
-        let name = scene.name;
-        let render = |options: &str| {
-            program.ok(&format!("render gallery:{name} --resolution 24x20 --spp 3 -q -o a.exr {options}"));
-            program.read("a.exr")
-        };
-        let first = render("--threads 1");
-        for options in
-            ["--threads 2", "--threads 3", "--threads 8", "--threads 2 --tile 7", "--threads 8 --tile 64"]
-        {
-            assert_eq!(render(options), first, "{name} {options}");
-        }
+        check_repeatability(&program, &format!("gallery:{}", scene.name));
+    }
+}
+
+/// Scenes that other renderers publish; they are not part of this project.
+#[test]
+#[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
+fn threads_and_tiles_change_no_bit_of_published_scenes() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/mitsuba/tests/scenes");
+    let Ok(folders) = std::fs::read_dir(&folder) else {
+        println!("skipped: {} is not there", folder.display());
+        return;
+    };
+    let program = Program::new();
+    let files = folders.flatten().flat_map(|folder| std::fs::read_dir(folder.path()).into_iter().flatten());
+    let paths = files.flatten().map(|file| file.path());
+    for path in paths.filter(|path| path.extension().is_some_and(|suffix| suffix == "xml")) {
+        check_repeatability(&program, &path.display().to_string());
     }
 }
