@@ -73,14 +73,14 @@ impl Fingerprint {
         let names =
             self.parts.keys().chain(other.parts.keys().filter(|name| !self.parts.contains_key(*name)));
         let differing = names.filter(|name| self.parts.get(*name) != other.parts.get(*name));
-        let word = |name: &str, value: Option<&String>| match value {
+        let word = |value: Option<&String>| match value {
             None => "none".to_owned(),
-            Some(value) if value.len() == HASH_DIGITS && name != "seed" => format!("#{}", &value[..8]),
+            Some(value) if is_hash(value) => format!("#{}", &value[..8]),
             Some(value) => value.clone(),
         };
         differing
             .map(|name| {
-                let [a, b] = [self, other].map(|print| word(name, print.parts.get(name)));
+                let [a, b] = [self, other].map(|print| word(print.parts.get(name)));
                 format!("{name}: {a}, here {b}")
             })
             .collect()
@@ -100,6 +100,11 @@ impl Fingerprint {
 
 /// Digits of a hash: 128 bits, so that no two scenes meet by chance.
 const HASH_DIGITS: usize = 32;
+
+/// Whether a part's value stands for something larger. A seed has fewer digits.
+fn is_hash(value: &str) -> bool {
+    value.len() == HASH_DIGITS && value.bytes().all(|digit| digit.is_ascii_hexdigit())
+}
 
 /// The first digits of SHA-256.
 #[derive(Default)]
