@@ -3,14 +3,13 @@
 //! # References
 //! [Wald 2007] "On fast Construction of SAH-based Bounding Volume Hierarchies".
 
-use aureole_math::Bounds3;
 use glam::Vec4;
 use rayon::prelude::*;
 
-use crate::big::Big;
+use super::top_down::Cut;
+use super::tree::{Extent, Item};
 
-use super::tree::{BinaryNode, BinaryTree, Extent, FREE_LEVELS, Item};
-
+/// Added to a small number, it leaves that number in the lowest bits.
 const MAGIC: f32 = (1 << 23) as f32;
 /// Bins at most.
 const BINS: usize = 32;
@@ -18,127 +17,29 @@ const BINS: usize = 32;
 const FEW_BINS: usize = 8;
 /// Items whose cut is sought by sorting.
 const FEW_ITEMS: usize = 8;
-/// Items from which two threads pay.
-const PARALLEL: usize = 1 << 14;
 /// Items from which the bins of one node are filled by many threads.
 const PARALLEL_BINS: usize = 1 << 16;
 
-/// Builds a tree whose leaves have at most `leaf_size` items.
-pub(crate) fn build(mut items: Big<Item>, leaf_size: usize) -> BinaryTree {
-    if items.is_empty() {
-        return BinaryTree::default();
-    }
-    let top = Builder { leaf_size }.split_parallel(&mut items, 0, 0);
-    let mut nodes = Big::zeroed(top.size());
-    top.place(&mut nodes, 0);
-    let mut order = Big::zeroed(items.len());
-    order.par_iter_mut().zip(&items[..]).for_each(|(number, item)| *number = item.index());
-    BinaryTree { nodes, order }
-}
+/// Cuts where the sum of area times number is least.
+pub(super) struct Binned;
 
-/// The upper part of a tree, whose halves come from different threads.
-enum Top {
-    /// A whole subtree; its root is number 0.
-    Nodes(Vec<BinaryNode>),
-    Halves {
-        bounds: Bounds3,
-        size: usize,
-        halves: Box<[Top; 2]>,
-    },
-}
-
-impl Top {
-    fn size(&self) -> usize {
-        match self {
-            Self::Nodes(nodes) => nodes.len(),
-            Self::Halves { size, .. } => *size,
+impl Cut for Binned {
+    fn cut(&self, items: &mut [Item]) -> usize {
+        let centers = centers(items);
+        if items.len() <= FEW_ITEMS {
+            return sweep(items, &centers);
         }
-    }
-
-    /// Puts the nodes where they belong; the first is number `offset` of the tree.
-    fn place(self, into: &mut [BinaryNode], offset: usize) {
-        match self {
-            Self::Nodes(nodes) => {
-                for (place, node) in into.iter_mut().zip(nodes) {
-                    *place = node.moved(offset);
-                }
-            }
-            Self::Halves { bounds, halves, .. } => {
-                let [left, right] = *halves;
-                let (top, rest) = into.split_at_mut(1);
-                let (left_into, right_into) = rest.split_at_mut(left.size());
-                let right_offset = offset + 1 + left.size();
-                top[0] = BinaryNode::inner(bounds, offset + 1, right_offset);
-                rayon::join(|| left.place(left_into, offset + 1), || right.place(right_into, right_offset));
-            }
-        }
+        Binning::new(&centers, items.len()).map_or(0, |binning| binning.cut(items))
     }
 }
 
-struct Builder {
-    leaf_size: usize,
-}
-
-impl Builder {
-    /// The tree over items that begin at `first` in the order.
-    fn split_parallel(&self, items: &mut [Item], first: usize, depth: usize) -> Top {
-        if items.len() <= PARALLEL {
-            let mut nodes = Vec::with_capacity(items.len());
-            self.split(items, first, depth, &mut nodes);
-            return Top::Nodes(nodes);
-        }
-        let (bounds, centers) = extents(items);
-        let middle = cut(items, &centers, depth);
-        let (left, right) = items.split_at_mut(middle);
-        let (left, right) = rayon::join(
-            || self.split_parallel(left, first, depth + 1),
-            || self.split_parallel(right, first + middle, depth + 1),
-        );
-        let size = 1 + left.size() + right.size();
-        Top::Halves { bounds: bounds.bounds(), size, halves: Box::new([left, right]) }
-    }
-
-    fn split(&self, items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<BinaryNode>) {
-        let (bounds, centers) = extents(items);
-        let bounds = bounds.bounds();
-        if items.len() <= self.leaf_size {
-            nodes.push(BinaryNode::leaf(bounds, first, items.len()));
-            return;
-        }
-        let middle = cut(items, &centers, depth);
-        let (left, right) = items.split_at_mut(middle);
-        let node = nodes.len();
-        nodes.push(BinaryNode::leaf(bounds, first, 0));
-        self.split(left, first, depth + 1, nodes);
-        nodes[node] = BinaryNode::inner(bounds, node + 1, nodes.len());
-        self.split(right, first + middle, depth + 1, nodes);
-    }
-}
-
-/// Moves the items of one side to the front; their number, which is neither none nor all.
-fn cut(items: &mut [Item], centers: &Extent, depth: usize) -> usize {
-    let middle = match Binning::new(centers, items.len()) {
-        _ if depth >= FREE_LEVELS => 0,
-        _ if items.len() <= FEW_ITEMS => sweep(items, centers),
-        Some(binning) => binning.cut(items),
-        None => 0,
-    };
-    // All in one place, too deep, or beyond numbers: halve the list.
-    if middle == 0 || middle == items.len() { items.len() / 2 } else { middle }
-}
-
-/// The box around items and that around their centers.
-fn extents(items: &[Item]) -> (Extent, Extent) {
-    let of = |items: &[Item]| {
-        items.iter().fold((Extent::EMPTY, Extent::EMPTY), |(bounds, centers), item| {
-            (bounds.union(&item.bounds()), centers.with(item.center()))
-        })
-    };
+/// The box around the items' centers.
+fn centers(items: &[Item]) -> Extent {
+    let of = |items: &[Item]| items.iter().fold(Extent::EMPTY, |extent, item| extent.with(item.center()));
     if items.len() < PARALLEL_BINS {
         return of(items);
     }
-    let both = |a: (Extent, Extent), b: (Extent, Extent)| (a.0.union(&b.0), a.1.union(&b.1));
-    items.par_chunks(PARALLEL_BINS / 4).map(of).reduce(|| (Extent::EMPTY, Extent::EMPTY), both)
+    items.par_chunks(PARALLEL_BINS / 4).map(of).reduce(|| Extent::EMPTY, |a, b| a.union(&b))
 }
 
 /// Sorts few items along the axis on which their centers differ most, and cuts where it is cheapest; the number on the left.

@@ -3,10 +3,12 @@
 use aureole_math::Bounds3;
 use rayon::prelude::*;
 
+use super::binned::Binned;
 use super::collapse::{Costs, collapse};
+use super::linear::Linear;
 use super::node::Bvh8;
 use super::tree::{BinaryTree, Item};
-use super::{binned, reinsert};
+use super::{reinsert, top_down};
 use crate::big::Big;
 use crate::{Config, Quality};
 
@@ -29,10 +31,14 @@ pub(crate) fn build(
     lanes: usize,
     config: &Config,
 ) -> Built {
-    let items = items(count, bounds);
+    let mut items = items(count, bounds);
     let tree = match config.quality {
-        Quality::Fast | Quality::Medium => binned::build(items, lanes),
-        Quality::High => reinsert::optimize(binned::build(items, lanes), REINSERTED, 1),
+        Quality::Fast => {
+            let curve = Linear::sort(&mut items);
+            top_down::build(items, lanes, &curve)
+        }
+        Quality::Medium => top_down::build(items, lanes, &Binned),
+        Quality::High => reinsert::optimize(top_down::build(items, lanes, &Binned), REINSERTED, 1),
     };
     collapse(tree, &Costs::new(lanes))
 }
@@ -43,7 +49,7 @@ pub(crate) fn build_binary(
     bounds: impl Fn(u32) -> Bounds3 + Sync,
     leaf_size: usize,
 ) -> BinaryTree {
-    binned::build(items(count, bounds), leaf_size)
+    top_down::build(items(count, bounds), leaf_size, &Binned)
 }
 
 fn items(count: usize, bounds: impl Fn(u32) -> Bounds3 + Sync) -> Big<Item> {

@@ -3,9 +3,11 @@
 mod binned;
 mod build;
 mod collapse;
+mod linear;
 mod node;
 mod packet;
 mod reinsert;
+mod top_down;
 mod traverse;
 mod tree;
 

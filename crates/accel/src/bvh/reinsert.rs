@@ -176,7 +176,7 @@ impl Linked {
 mod tests {
     use aureole_math::{Bounds3, Pcg32, Point3, Vector3};
 
-    use super::super::{binned, tree::Item};
+    use super::super::{binned::Binned, top_down, tree::Item};
     use super::*;
 
     fn area(tree: &BinaryTree) -> f32 {
@@ -194,7 +194,7 @@ mod tests {
             boxes.push(Bounds3::new(p, p + size));
         }
         let items: Vec<Item> = boxes.iter().zip(0..).map(|(b, i)| Item::new(b, i)).collect();
-        let before = binned::build(Big::from(items), 1);
+        let before = top_down::build(Big::from(items), 1, &Binned);
         let before_area = area(&before);
         let after = optimize(before, 1.0, 2);
         assert!(area(&after) < 0.95 * before_area, "{} of {before_area}", area(&after));
