@@ -223,7 +223,7 @@ fn hits_lie_on_the_surface() {
         let shape = &world.shapes[example.shape];
         let (center, radius) = ball_around(&shape.bounds());
         let mut count = 0;
-        for _ in 0..4000 {
+        for _ in 0..8000 {
             let ray = random_line(center, radius, &mut rng);
             let Some(hit) = closest_hit(shape, &ray) else { continue };
             count += 1;
@@ -258,8 +258,9 @@ fn hits_lie_on_the_surface() {
 fn derivatives_follow_the_surface() {
     let mut world = World::default();
     let mut rng = Pcg32::new(2);
-    // A grid has no parameters; strips are met at their curve's depth, however they pretend to be turned.
-    let without = ["grid", "flat strip", "round strip", "ribbon"];
+    // A grid has no parameters; strips are met at their curve's depth, however they pretend to be turned; v stands still on
+    // the round joints of chains.
+    let without = ["grid", "flat strip", "round strip", "ribbon", "chains"];
     for example in examples(&mut world).into_iter().filter(|example| !without.contains(&example.label)) {
         let shape = &world.shapes[example.shape];
         let (center, radius) = ball_around(&shape.bounds());
