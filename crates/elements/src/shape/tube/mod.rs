@@ -298,7 +298,8 @@ impl ShapeOps for Tube {
                     p: narrow(center).to_point() + n * radius as f32,
                     ng: n * self.orientation,
                     dp_du: axis.try_normalized().unwrap_or(Vector3::Z).cross(n) * (TAU * radius as f32),
-                    dp_dv: (axis + n * cone.widening() as f32) * self.segments.len() as f32,
+                    // On the side this is the axis plus the widening along n; on round ends it stays tangent.
+                    dp_dv: (axis - n * axis.dot(n)) * self.segments.len() as f32,
                 };
                 (n.map(place), axis, radius)
             }

@@ -57,7 +57,7 @@ impl RoundCone {
     }
 
     /// By how much the radius grows from the first end to the second.
-    pub(super) fn widening(&self) -> f64 {
+    fn widening(&self) -> f64 {
         self.radii[1] - self.radii[0]
     }
 
