@@ -156,7 +156,7 @@ mod tests {
     fn what_is_wrong_has_a_name() {
         let message = |parts: &[Range<u32>]| merge(parts).unwrap_err().to_string();
         assert_eq!(message(&[]), "there is nothing to merge");
-        assert_eq!(message(&[3..5]), "samples 0..3, 5..8 are missing");
+        assert_eq!(message(std::slice::from_ref(&(3..5))), "samples 0..3, 5..8 are missing");
         assert_eq!(message(&[0..5, 3..8]), "samples 3..5 are in both `0..5` and `3..8`");
         let mut merger = Merger::default();
         merger.add(part(0..2, 0), "a").unwrap();
