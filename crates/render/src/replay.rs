@@ -1,6 +1,6 @@
 //! One sample again, slowly: what its path met, drew and found.
 //!
-//! Integrators tell a [`Watch`] what happens. In a render nobody watches, and what would be told is not even computed.
+//! Integrators tell a `Watch` what happens. In a render nobody watches, and what would be told is not even computed.
 
 use aureole_desc::SceneError;
 use aureole_math::{Normal3, Point2, Point3, Vector3};
