@@ -97,7 +97,7 @@ fn checkpoints_of_other_renders_are_refused() {
         ("--set integrator.max_depth=2", "integrator: #"),
         ("--integrator direct", "integrator option: none, here direct"),
         ("--set camera.fov=20", "camera: #"),
-        ("--set sampler.kind=sobol", "sampler: #"),
+        ("--set sampler.kind=independent", "sampler: #"),
         ("--spp 3", "4 already, only 3"),
         ("--samples 2..4", "samples: 0..4, here 2..4"),
     ] {

@@ -10,12 +10,12 @@ pub(super) const PARAMS: [ParamDoc; 9] = [
     ParamDoc { name: "latitude", ty: "float", default: "35.6894", doc: "of the place, degrees north" },
     ParamDoc { name: "longitude", ty: "float", default: "139.6917", doc: "of the place, degrees east" },
     ParamDoc { name: "timezone", ty: "float", default: "9", doc: "hours before universal time" },
-    ParamDoc { name: "year", ty: "int", default: "2010", doc: "" },
-    ParamDoc { name: "month", ty: "int", default: "7", doc: "" },
-    ParamDoc { name: "day", ty: "int", default: "10", doc: "" },
+    ParamDoc { name: "year", ty: "int", default: "2010", doc: "of the date" },
+    ParamDoc { name: "month", ty: "int", default: "7", doc: "1 to 12" },
+    ParamDoc { name: "day", ty: "int", default: "10", doc: "of the month" },
     ParamDoc { name: "hour", ty: "float", default: "15", doc: "local time" },
-    ParamDoc { name: "minute", ty: "float", default: "0", doc: "" },
-    ParamDoc { name: "second", ty: "float", default: "0", doc: "" },
+    ParamDoc { name: "minute", ty: "float", default: "0", doc: "of the hour" },
+    ParamDoc { name: "second", ty: "float", default: "0", doc: "of the minute" },
 ];
 
 /// A place and a time.
