@@ -12,6 +12,7 @@ use aureole::math::{Pcg32, Point3, Ray, Vector3};
 use clap::Args;
 use serde::Serialize;
 
+use crate::command::json_line;
 use crate::exit::{Exit, Failure};
 use crate::output::print;
 
@@ -78,13 +79,9 @@ pub(crate) fn run(args: &LectureArgs) -> Result<(), Failure> {
         let frame = Frame { world, room: &room };
         let every = if structure == Structure::List { LIST_TILES } else { 1 };
         let row = measure(&frame, threads, every, &format!("{structure:?}, {accuracy:?}"), build_seconds);
-        print(&if args.json { json(&row)? } else { text(&row) })?;
+        print(&if args.json { json_line(&row)? } else { text(&row) })?;
     }
     Ok(())
-}
-
-fn json(row: &Row) -> Result<String, Failure> {
-    crate::command::json_line(row)
 }
 
 fn text(row: &Row) -> String {

@@ -1,15 +1,17 @@
 //! `aureole bench rays`: millions of rays a second.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use aureole::accel::{Accuracy, Config, Hit, NoUserShapes, Quality, Structure, World};
 use clap::{Args, ValueEnum};
-use serde_json::{Map, Value, json};
+use serde::Serialize;
 
 use super::clock::{Chunks, Outcome, median, pass};
 use super::ray_file::{CHUNK, KINDS, RaySet, read_mesh, read_rays};
+use crate::command::json_line;
 use crate::exit::{Exit, Failure};
 use crate::output::print;
 
@@ -216,37 +218,65 @@ fn report(
     name: &str,
     build_seconds: f64,
 ) -> Result<(), Failure> {
-    let bytes = tracer.world.stats().bytes;
-    let mesh = args.mesh.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-    let mut line = Map::new();
-    line.insert("lib".into(), json!(name));
-    line.insert("mesh".into(), json!(mesh));
-    line.insert("build_s".into(), json!(build_seconds));
-    line.insert("mib".into(), json!(bytes as f64 / f64::from(1 << 20)));
-    let mut busy = 1.0_f64;
-    let mut text =
-        format!("{name}: built in {build_seconds:.3} s, {:.1} MiB\n", bytes as f64 / f64::from(1 << 20));
+    let mib = tracer.world.stats().bytes as f64 / f64::from(1 << 20);
+    let mesh = args.mesh.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let mut line = Line { lib: name, mesh, build_s: build_seconds, mib, busy: 1.0, ..Line::default() };
+    let mut text = format!("{name}: built in {build_seconds:.3} s, {mib:.1} MiB\n");
     for set in sets.iter().filter(|set| !set.rays.is_empty()) {
         let work = Work(tracer, set);
         let warm = pass(&work, 1, 1);
-        let mut entry = json!({
-            "rays": set.rays.len(), "hits": warm.outcome.hits, "sum_t": warm.outcome.sum_t,
-        });
+        let mut rates = BTreeMap::new();
         for &threads in &args.threads {
             let (seconds, share) = median(&work, threads.max(1), &warm, args.samples as usize);
-            busy = busy.min(share);
+            line.busy = line.busy.min(share);
             let rate = set.rays.len() as f64 / 1e6 / seconds;
-            entry[format!("t{threads}")] = json!(rate);
+            rates.insert(format!("t{threads}"), rate);
             let _ = writeln!(
                 text,
                 "  {:8} {threads:3} threads {rate:9.2} million rays a second",
                 KINDS[set.kind]
             );
         }
-        line.insert(KINDS[set.kind].into(), entry);
+        let Outcome { hits, sum_t } = warm.outcome;
+        let entry = Some(Entry { rays: set.rays.len(), hits, sum_t, rates });
+        match set.kind {
+            0 => line.primary = entry,
+            1 => line.shadow = entry,
+            2 => line.ao = entry,
+            _ => line.diffuse = entry,
+        }
     }
-    line.insert("busy".into(), json!(busy));
-    print(&if args.json { format!("{}\n", Value::Object(line)) } else { text })
+    print(&if args.json { json_line(&line)? } else { text })
+}
+
+/// What the harness prints for a library, in its order.
+#[derive(Default, Serialize)]
+struct Line<'a> {
+    lib: &'a str,
+    mesh: String,
+    build_s: f64,
+    mib: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    primary: Option<Entry>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shadow: Option<Entry>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ao: Option<Entry>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    diffuse: Option<Entry>,
+    /// The least share of their cores that the threads had.
+    busy: f64,
+}
+
+/// What it prints for a kind of rays.
+#[derive(Serialize)]
+struct Entry {
+    rays: usize,
+    hits: u64,
+    sum_t: f64,
+    /// Millions of rays a second, by number of threads.
+    #[serde(flatten)]
+    rates: BTreeMap<String, f64>,
 }
 
 /// Writes the result of each ray.
