@@ -113,6 +113,13 @@ fn closest_of_packet<S: Simd, T: TriangleTest, U: UserShapes>(
     user: &U,
 ) {
     let rays = coherent.rays;
+    if !coherent.bvh.is_met_by(&coherent.packet) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            let none = Hit { t: ray.t_max, ..Hit::NONE };
+            *hit = closest_after_triangles::<S, U>(world, ray, none, user);
+        }
+        return;
+    }
     // No arrays' `map` here: it would not be compiled for the instruction set.
     let mut tests = [T::new(&rays[0]); PACKET];
     let mut nearest = [Candidate { t: 0.0, u: 0.0, v: 0.0, id: 0 }; PACKET];
@@ -122,9 +129,10 @@ fn closest_of_packet<S: Simd, T: TriangleTest, U: UserShapes>(
         nearest[i].t = ray.t_max;
         ends[i] = ray.t_max;
     }
-    let together = T::together(&tests);
+    let side_by_side = coherent.packet.side_by_side(rays);
+    let together = T::together(&tests, &side_by_side);
     let mut among = NearestTriangles { world, user, rays, tests, together, nearest };
-    coherent.bvh.walk_packet(&coherent.packet, &mut ends, &mut among);
+    coherent.bvh.walk_packet(&coherent.packet, &side_by_side, &mut ends, &mut among);
     for (i, hit) in hits.iter_mut().enumerate() {
         let best = among.search(i).best();
         *hit = closest_after_triangles::<S, U>(world, &rays[i], best, user);

@@ -10,7 +10,7 @@ use aureole_math::Ray;
 use bytemuck::{Pod, Zeroable};
 
 use crate::Accuracy;
-use crate::bvh::PACKET;
+use crate::bvh::{PACKET, SideBySide};
 use crate::simd::{Floats, Simd, splat3};
 
 /// Triangles in a block.
@@ -74,7 +74,7 @@ pub(crate) trait TriangleTest: Copy {
     fn new(ray: &Ray) -> Self;
 
     /// The rays of a packet, if they can be tested together.
-    fn together(rays: &[Self; PACKET]) -> Option<Self::Rays>;
+    fn together(rays: &[Self; PACKET], side_by_side: &SideBySide) -> Option<Self::Rays>;
 
     /// The hits of the ray with the triangles of a block in `(t_min, t_max]`.
     fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<LANES>;

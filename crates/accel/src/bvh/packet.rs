@@ -35,9 +35,15 @@ pub(crate) struct Packet<S: Simd> {
     low_inv: [S::F8; 3],
     high_inv: [S::F8; 3],
     t_min: S::F8,
-    /// For each axis the numbers of each ray.
-    rays: [[[f32; PACKET]; 4]; 3],
-    t_mins: [f32; PACKET],
+}
+
+/// The rays of a packet side by side.
+pub(crate) struct SideBySide {
+    pub origin: [[f32; PACKET]; 3],
+    pub direction: [[f32; PACKET]; 3],
+    pub t_min: [f32; PACKET],
+    /// For each axis the factors and offsets of the near and the far planes, as in `TraversalRay`.
+    planes: [[[f32; PACKET]; 4]; 3],
 }
 
 /// How much directions may differ, relative to their length.
@@ -66,10 +72,8 @@ impl<S: Simd> Packet<S> {
         let near = [signs as usize & 1, (signs as usize >> 1) & 1, (signs as usize >> 2) & 1];
         let (low_o, high_o) = (low_o.to_array(), high_o.to_array());
         let pick = |axis: usize, far: usize| if near[axis] ^ far == 0 { high_o[axis] } else { low_o[axis] };
-        let mut t_mins = [0.0; PACKET];
         let mut t_min = f32::INFINITY;
-        for (own, ray) in t_mins.iter_mut().zip(rays) {
-            *own = ray.t_min;
+        for ray in rays {
             t_min = t_min.min(ray.t_min);
         }
         Some(Self {
@@ -79,9 +83,39 @@ impl<S: Simd> Packet<S> {
             low_inv: splat3(reciprocal(high).truncate().to_array()),
             high_inv: splat3(reciprocal(low).truncate().to_array()),
             t_min: S::F8::splat(t_min),
-            rays: each_ray::<S>(rays, near),
-            t_mins,
         })
+    }
+
+    /// The rays by themselves.
+    #[inline(always)]
+    pub(crate) fn side_by_side(&self, rays: &[Ray; PACKET]) -> SideBySide {
+        let mut out = SideBySide {
+            origin: [[0.0; PACKET]; 3],
+            direction: [[0.0; PACKET]; 3],
+            t_min: [0.0; PACKET],
+            planes: [[[0.0; PACKET]; 4]; 3],
+        };
+        for (i, ray) in rays.iter().enumerate() {
+            let (o, d) = (ray.origin, ray.direction);
+            (out.origin[0][i], out.origin[1][i], out.origin[2][i]) = (o.x, o.y, o.z);
+            (out.direction[0][i], out.direction[1][i], out.direction[2][i]) = (d.x, d.y, d.z);
+            out.t_min[i] = ray.t_min;
+        }
+        for axis in 0..3 {
+            // All directions have one sign on this axis.
+            let sign = S::F16::splat(if self.near[axis] == 0 { 1.0 } else { -1.0 });
+            let inv = sign / S::F16::load(&out.direction[axis]).abs().max(S::F16::splat(1e-18));
+            let offset = S::F16::load(&out.origin[axis]) * inv;
+            let slack = offset.abs() * S::F16::splat(ABSOLUTE);
+            let relative = S::F16::splat(RELATIVE);
+            out.planes[axis] = [
+                inv.to_array(),
+                (offset + slack).to_array(),
+                (inv * relative).to_array(),
+                ((offset - slack) * relative).to_array(),
+            ];
+        }
+        out
     }
 
     /// Where the first ray may enter each of eight boxes, and a bit for each that some ray may meet before `t_max`.
@@ -101,11 +135,11 @@ impl<S: Simd> Packet<S> {
 
     /// A bit for each ray that meets one box before its end.
     #[inline(always)]
-    fn intersect_box(&self, node: &Node, slot: usize, ends: &[f32; PACKET]) -> u32 {
-        let mut enter = S::F16::load(&self.t_mins);
+    fn intersect_box(&self, rays: &SideBySide, node: &Node, slot: usize, ends: &[f32; PACKET]) -> u32 {
+        let mut enter = S::F16::load(&rays.t_min);
         let mut leave = S::F16::load(ends) * S::F16::splat(TIE_SCALE);
         for axis in 0..3 {
-            let [near_inv, near_offset, far_inv, far_offset] = &self.rays[axis];
+            let [near_inv, near_offset, far_inv, far_offset] = &rays.planes[axis];
             let near = S::F16::splat(node.planes[axis][self.near[axis]][slot]);
             let far = S::F16::splat(node.planes[axis][self.near[axis] ^ 1][slot]);
             enter = near.mul_sub(S::F16::load(near_inv), S::F16::load(near_offset)).max(enter);
@@ -121,40 +155,19 @@ fn reciprocal(d: Vec4) -> Vec4 {
     d.abs().max(Vec4::splat(1e-18)).copysign(d).recip()
 }
 
-/// For each axis the factors and offsets of the near and the far planes, as in `TraversalRay`.
-#[inline(always)]
-fn each_ray<S: Simd>(rays: &[Ray; PACKET], near: [usize; 3]) -> [[[f32; PACKET]; 4]; 3] {
-    let mut origin = [[0.0; PACKET]; 3];
-    let mut direction = [[0.0; PACKET]; 3];
-    for (i, ray) in rays.iter().enumerate() {
-        let (o, d) = (ray.origin, ray.direction);
-        (origin[0][i], origin[1][i], origin[2][i]) = (o.x, o.y, o.z);
-        (direction[0][i], direction[1][i], direction[2][i]) = (d.x, d.y, d.z);
-    }
-    let mut out = [[[0.0; PACKET]; 4]; 3];
-    for axis in 0..3 {
-        // All directions have one sign on this axis.
-        let sign = S::F16::splat(if near[axis] == 0 { 1.0 } else { -1.0 });
-        let inv = sign / S::F16::load(&direction[axis]).abs().max(S::F16::splat(1e-18));
-        let offset = S::F16::load(&origin[axis]) * inv;
-        let slack = offset.abs() * S::F16::splat(ABSOLUTE);
-        let relative = S::F16::splat(RELATIVE);
-        out[axis] = [
-            inv.to_array(),
-            (offset + slack).to_array(),
-            (inv * relative).to_array(),
-            ((offset - slack) * relative).to_array(),
-        ];
-    }
-    out
-}
-
 impl Bvh8 {
+    /// Whether some ray of a packet may meet anything at all.
+    #[inline(always)]
+    pub(crate) fn is_met_by<S: Simd>(&self, packet: &Packet<S>) -> bool {
+        self.nodes.first().is_some_and(|root| packet.intersect_node(root, f32::INFINITY).1 != 0)
+    }
+
     /// Visits the leaves that rays of a packet may meet, nearest first.
     #[inline(always)]
     pub(crate) fn walk_packet<S: Simd>(
         &self,
         packet: &Packet<S>,
+        rays: &SideBySide,
         ends: &mut [f32; PACKET],
         visitor: &mut impl VisitPacket,
     ) {
@@ -183,7 +196,7 @@ impl Bvh8 {
                     continue;
                 }
                 let (parent, slot) = (&self.nodes[entry as u32 as usize / WIDTH], entry as usize % WIDTH);
-                let active = packet.intersect_box(parent, slot, ends);
+                let active = packet.intersect_box(rays, parent, slot, ends);
                 if active == 0 {
                     continue;
                 }

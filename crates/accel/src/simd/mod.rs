@@ -58,16 +58,6 @@ pub(crate) fn splat3<const N: usize, F: Floats<N>>(x: [f32; 3]) -> [F; 3] {
     [F::splat(x[0]), F::splat(x[1]), F::splat(x[2])]
 }
 
-/// A number of each of many things.
-#[inline(always)]
-pub(crate) fn numbers<T, const N: usize>(things: &[T; N], number: impl Fn(&T) -> f32) -> [f32; N] {
-    let mut out = [0.0; N];
-    for (out, thing) in out.iter_mut().zip(things) {
-        *out = number(thing);
-    }
-    out
-}
-
 /// Three numbers of each of many things, side by side.
 #[inline(always)]
 pub(crate) fn transposed<T, const N: usize>(

@@ -6,8 +6,8 @@
 use aureole_math::Ray;
 
 use super::{Block, Hits, LANES, TriangleTest, corners, one_triangle};
-use crate::bvh::PACKET;
-use crate::simd::{Floats, Mask, Simd, load3, numbers, splat3, transposed};
+use crate::bvh::{PACKET, SideBySide};
+use crate::simd::{Floats, Mask, Simd, load3, splat3};
 
 /// A ray as it is.
 #[derive(Clone, Copy, Debug)]
@@ -39,12 +39,8 @@ impl TriangleTest for Fast {
     }
 
     #[inline(always)]
-    fn together(rays: &[Self; PACKET]) -> Option<FastRays> {
-        Some(FastRays {
-            origin: transposed(rays, |ray| ray.origin),
-            direction: transposed(rays, |ray| ray.direction),
-            t_min: numbers(rays, |ray| ray.t_min),
-        })
+    fn together(_: &[Self; PACKET], rays: &SideBySide) -> Option<FastRays> {
+        Some(FastRays { origin: rays.origin, direction: rays.direction, t_min: rays.t_min })
     }
 
     #[inline(always)]

@@ -7,8 +7,8 @@ use aureole_math::{Ray, gamma};
 use glam::Vec4;
 
 use super::{Block, Hits, LANES, TriangleTest, corners, one_triangle};
-use crate::bvh::PACKET;
-use crate::simd::{Floats, Mask, Simd, load3, numbers, splat3, transposed};
+use crate::bvh::{PACKET, SideBySide};
+use crate::simd::{Floats, Mask, Simd, load3, splat3, transposed};
 
 /// What becomes x, y and z, by the largest axis and whether the ray runs down it: the winding of triangles is kept.
 const AXES: [[[usize; 3]; 2]; 3] = [[[1, 2, 0], [2, 1, 0]], [[2, 0, 1], [0, 2, 1]], [[0, 1, 2], [1, 0, 2]]];
@@ -56,13 +56,13 @@ impl TriangleTest for Watertight {
     }
 
     #[inline(always)]
-    fn together(rays: &[Self; PACKET]) -> Option<WatertightRays> {
+    fn together(rays: &[Self; PACKET], side_by_side: &SideBySide) -> Option<WatertightRays> {
         let axes = rays[0].axes;
         rays.iter().all(|ray| ray.axes == axes).then(|| WatertightRays {
             axes,
             shear: transposed(rays, |ray| ray.shear),
             origin: transposed(rays, |ray| ray.origin),
-            t_min: numbers(rays, |ray| ray.t_min),
+            t_min: side_by_side.t_min,
         })
     }
 

@@ -18,12 +18,15 @@ pub(super) const KINDS: [&str; 4] = ["primary", "shadow", "ao", "diffuse"];
 /// Rays that a thread takes at once.
 pub(super) const CHUNK: usize = 4096;
 
+/// A ray as files have it: origin, t_min, direction, t_max.
+pub(super) type Record = [f32; 8];
+
 /// Rays of one kind.
 pub(super) struct RaySet {
     pub kind: usize,
     /// Whether any hit will do.
     pub any: bool,
-    pub rays: Vec<Ray>,
+    pub rays: Vec<Record>,
 }
 
 /// The triangles of a mesh file.
@@ -82,7 +85,7 @@ impl<'a> File<'a> {
         }
         let rays = self.bytes(self.u64(at + 16)?, self.u64(at + 8)?, 32)?;
         let taken = rays.chunks(32 * CHUNK).step_by(every);
-        let rays = taken.flat_map(|run| run.chunks_exact(32)).map(ray).collect();
+        let rays = taken.flat_map(|run| run.chunks_exact(32)).map(floats).collect();
         Ok(RaySet { kind, any: self.u32(at + 4)? != 0, rays })
     }
 }
@@ -91,8 +94,9 @@ fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
     std::array::from_fn(|i| f32::from_le_bytes(std::array::from_fn(|byte| bytes[4 * i + byte])))
 }
 
-fn ray(bytes: &[u8]) -> Ray {
-    let [ox, oy, oz, t_min, dx, dy, dz, t_max] = floats(bytes);
+/// The ray of a record.
+#[inline]
+pub(super) fn ray(&[ox, oy, oz, t_min, dx, dy, dz, t_max]: &Record) -> Ray {
     let (origin, direction) = (Point3::new(ox, oy, oz), Vector3::new(dx, dy, dz));
     Ray { origin, t_min, direction, t_max, time: 0.0 }
 }

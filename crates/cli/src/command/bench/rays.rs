@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use aureole::accel::{Accuracy, Config, Hit, NoUserShapes, Quality, Structure, World};
+use aureole::math::Ray;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::clock::{Chunks, Outcome, median, pass};
-use super::ray_file::{CHUNK, KINDS, RaySet, read_mesh, read_rays};
+use super::ray_file::{CHUNK, KINDS, RaySet, ray, read_mesh, read_rays};
 use crate::command::json_line;
 use crate::exit::{Exit, Failure};
 use crate::output::print;
@@ -163,25 +164,34 @@ struct Tracer<'a> {
 impl Tracer<'_> {
     /// The ray parameter of each hit; infinite where there is none.
     fn trace(&self, set: &RaySet, chunk: usize, mut result: impl FnMut(f32)) {
-        let rays = &set.rays[chunk * CHUNK..set.rays.len().min((chunk + 1) * CHUNK)];
+        // As for other libraries, making a ray of a record is part of what is measured.
+        let records = &set.rays[chunk * CHUNK..set.rays.len().min((chunk + 1) * CHUNK)];
         let hit_or_miss = |blocked: bool| if blocked { 1.0 } else { f32::INFINITY };
         match (self.mode, set.any) {
             (Mode::Single, false) => {
-                for ray in rays {
-                    result(self.world.closest_hit(ray, &NoUserShapes).map_or(f32::INFINITY, |hit| hit.t));
+                for record in records {
+                    result(
+                        self.world
+                            .closest_hit(&ray(record), &NoUserShapes)
+                            .map_or(f32::INFINITY, |hit| hit.t),
+                    );
                 }
             }
             (Mode::Single, true) => {
-                rays.iter().for_each(|ray| result(hit_or_miss(self.world.occluded(ray, &NoUserShapes))));
+                for record in records {
+                    result(hit_or_miss(self.world.occluded(&ray(record), &NoUserShapes)));
+                }
             }
             (Mode::Stream, false) => {
+                let rays: Vec<Ray> = records.iter().map(ray).collect();
                 let mut hits = vec![Hit::NONE; rays.len()];
-                self.world.closest_hits(rays, &mut hits, &NoUserShapes);
+                self.world.closest_hits(&rays, &mut hits, &NoUserShapes);
                 hits.iter().for_each(|hit| result(hit.t));
             }
             (Mode::Stream, true) => {
+                let rays: Vec<Ray> = records.iter().map(ray).collect();
                 let mut blocked = vec![false; rays.len()];
-                self.world.occluded_many(rays, &mut blocked, &NoUserShapes);
+                self.world.occluded_many(&rays, &mut blocked, &NoUserShapes);
                 blocked.into_iter().for_each(|blocked| result(hit_or_miss(blocked)));
             }
         }
