@@ -23,6 +23,7 @@ pub mod mesh;
 mod mitsuba;
 mod object;
 mod pbrt;
+pub mod spectrum_file;
 
 use std::path::Path;
 

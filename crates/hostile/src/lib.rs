@@ -15,6 +15,7 @@
 #![forbid(unsafe_code)]
 
 pub mod corrupt;
+mod film;
 pub mod samples;
 pub mod targets;
 mod wild;

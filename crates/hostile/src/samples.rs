@@ -8,6 +8,8 @@ use flate2::Compression;
 use flate2::write::{GzEncoder, ZlibEncoder};
 use image::{DynamicImage, ImageFormat};
 
+use crate::film;
+
 /// A file: its name and content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sample {
@@ -36,6 +38,13 @@ pub fn of(target: &str) -> Vec<Sample> {
         "serialized" => vec![sample("version-3", &serialized(3)), sample("version-4", &serialized(4))],
         "vol" => vec![sample("ball", &vol())],
         "brdf" => vec![sample("rgl", &rgl()), sample("merl", &merl())],
+        "ies" => vec![
+            sample("half", include_bytes!("../samples/half.ies")),
+            sample("tilted", include_bytes!("../samples/tilted.ies")),
+        ],
+        "curves" => vec![sample("two", include_bytes!("../samples/two.curves"))],
+        "spectrum" => vec![sample("lamp", include_bytes!("../samples/lamp.spd"))],
+        "film" => film::samples(),
         "gzip" => {
             vec![sample("scene", &gzip(GALLERY[0].text.as_bytes())), sample("plain", b"no gzip at all")]
         }
@@ -45,7 +54,7 @@ pub fn of(target: &str) -> Vec<Sample> {
     }
 }
 
-fn sample(name: &str, bytes: &[u8]) -> Sample {
+pub(crate) fn sample(name: &str, bytes: &[u8]) -> Sample {
     Sample { name: name.to_owned(), bytes: bytes.to_vec() }
 }
 

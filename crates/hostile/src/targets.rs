@@ -8,13 +8,13 @@ use std::path::Path;
 use aureole::desc::{
     Family, Limits, Mesh, Node, Params, Report, SceneDesc, SceneError, Sources, Span, Value,
 };
-use aureole::formats::mesh::{MeshError, obj, ply, serialized, vol};
-use aureole::formats::{LoadOptions, brdf, file, load_text};
+use aureole::formats::mesh::{MeshError, curves, ies, obj, ply, serialized, vol};
+use aureole::formats::{LoadOptions, brdf, file, load_text, spectrum_file};
 use aureole::image::{Encoding, ImageLimits, decode_bitmap, decode_image};
 use aureole::render::{RenderOptions, Silent, render};
 use aureole::scene::{CompileOptions, Scene, compile};
 
-use crate::wild;
+use crate::{film, wild};
 
 /// A reader under test.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +44,10 @@ pub const ALL: &[Target] = &[
     Target { name: "serialized", run: check_serialized },
     Target { name: "vol", run: check_vol },
     Target { name: "brdf", run: check_brdf },
+    Target { name: "ies", run: check_ies },
+    Target { name: "curves", run: check_curves },
+    Target { name: "spectrum", run: check_spectrum },
+    Target { name: "film", run: film::check },
     Target { name: "gzip", run: check_gzip },
     Target { name: "image", run: check_image },
     Target { name: "pbrt_render", run: |bytes| check_scene("pbrt", bytes) },
@@ -166,6 +170,46 @@ fn check_brdf(bytes: &[u8]) {
     desc.shapes.push(ball);
     desc.lights.push(sky);
     first_samples(desc);
+}
+
+/// A lamp's profile must also make a lamp.
+fn check_ies(bytes: &[u8]) {
+    let Ok(profile) = ies::decode(&String::from_utf8_lossy(bytes), &LIMITS) else { return };
+    assert_eq!(profile.candela.len(), profile.vertical.len() * profile.horizontal.len());
+    assert!(profile.candela.iter().all(|c| c.is_finite()), "{:?}", profile.candela);
+    let params = Params::new()
+        .with("vertical", Value::Floats(profile.vertical.into()))
+        .with("horizontal", Value::Floats(profile.horizontal.into()))
+        .with("candela", Value::Floats(profile.candela.into()));
+    let mut desc = SceneDesc::default();
+    let ball = desc.add(Node::new(Family::Shape, "sphere", Params::new(), Span::NONE));
+    let lamp = desc.add(Node::new(Family::Light, "goniometric", params, Span::NONE));
+    desc.shapes.push(ball);
+    desc.lights.push(lamp);
+    first_samples(desc);
+}
+
+/// Curves must also be met by rays.
+fn check_curves(bytes: &[u8]) {
+    let Ok(read) = curves::decode(bytes, 2, &LIMITS) else { return };
+    assert_eq!(read.points.len() as i64, 4 * read.counts.iter().map(|&n| i64::from(n)).sum::<i64>());
+    let params = Params::new()
+        .with("points", Value::Floats(read.points))
+        .with("counts", Value::Ints(read.counts))
+        .with("basis", Value::String("linear".to_owned()));
+    let mut desc = SceneDesc::default();
+    let tube = desc.add(Node::new(Family::Shape, "tube", params, Span::NONE));
+    let sky = desc.add(Node::new(Family::Light, "constant", Params::new(), Span::NONE));
+    desc.shapes.push(tube);
+    desc.lights.push(sky);
+    first_samples(desc);
+}
+
+fn check_spectrum(bytes: &[u8]) {
+    if let Ok(table) = spectrum_file::decode(&String::from_utf8_lossy(bytes)) {
+        assert_eq!(table.lambda.len(), table.values.len());
+        assert!(table.lambda.iter().chain(&table.values).all(|x| x.is_finite()), "{table:?}");
+    }
 }
 
 fn check_gzip(bytes: &[u8]) {

@@ -53,6 +53,18 @@ fn measured_reflectances() {
 }
 
 #[test]
+fn light_profiles_curves_and_spectra() {
+    for (name, count) in [("ies", 2_000), ("curves", 4_000), ("spectrum", 20_000)] {
+        damage(name, count);
+    }
+}
+
+#[test]
+fn films() {
+    damage("film", 2_000);
+}
+
+#[test]
 fn images() {
     damage("image", 2_000);
 }

@@ -88,22 +88,28 @@ impl FilmFile {
     /// enough for it.
     pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Self, FilmError> {
         let mut planes = Planes::decode(bytes, path, limits)?;
-        match text(&planes.metadata, "layout")? {
-            LAYOUT => {}
-            other => return Err(FilmError::Layout(other.chars().take(16).collect())),
-        }
+        check_layout(&planes)?;
         let wanted = text(&planes.metadata, "checksum")?.to_owned();
         planes.metadata.remove("aureole.checksum");
         if checksum(&planes) != wanted {
             return Err(FilmError::Checksum);
         }
+        Self::from_planes(&planes)
+    }
 
+    /// The film that numbers and facts stand for, whatever their checksum.
+    ///
+    /// # Errors
+    /// A [`FilmError`] where they do not make a film.
+    pub fn from_planes(planes: &Planes) -> Result<Self, FilmError> {
+        check_layout(planes)?;
         let [full_width, full_height, x, y] = numbers(&planes.metadata, "film")?;
         let [start, end] = numbers(&planes.metadata, "samples")?;
         let [spp] = numbers(&planes.metadata, "spp")?;
-        let (width, height) = (planes.width as u32, planes.height as u32);
-        let fits =
-            |start: u32, size: u32, whole: u32| start.checked_add(size).is_some_and(|end| end <= whole);
+        let [width, height] = [planes.width, planes.height].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
+        let fits = |start: u32, size: u32, whole: u32| {
+            size > 0 && start.checked_add(size).is_some_and(|end| end <= whole)
+        };
         if !(fits(x, width, full_width) && fits(y, height, full_height) && start < end && end <= spp) {
             return Err(FilmError::NotAFilm("its sizes contradict each other".into()));
         }
@@ -115,6 +121,13 @@ impl FilmFile {
         }
         let fingerprint = Fingerprint::from_text(text(&planes.metadata, "fingerprint")?);
         Ok(Self { film, fingerprint, samples: start..end, spp })
+    }
+}
+
+fn check_layout(planes: &Planes) -> Result<(), FilmError> {
+    match text(&planes.metadata, "layout")? {
+        LAYOUT => Ok(()),
+        other => Err(FilmError::Layout(other.chars().take(16).collect())),
     }
 }
 
@@ -137,27 +150,22 @@ fn channels(film: &Film) -> BTreeMap<String, Plane> {
 }
 
 fn film(shape: FilmShape, first: u32, channels: &BTreeMap<String, Plane>) -> Result<Film, FilmError> {
+    let size = shape.crop.width as usize * shape.crop.height as usize;
     let plane = |name: &str| match channels.get(name) {
-        Some(Plane::Uint(words)) => Ok(words),
+        Some(Plane::Uint(words)) if words.len() == size => Ok(words.as_slice()),
         _ => Err(FilmError::NotAFilm(format!("the channel `{name}` is missing"))),
     };
-    let mut film = Film::new(shape, first);
-    for (i, name) in SUMS.iter().enumerate() {
-        let mut words = [[].as_slice(); 4];
+    let mut words = [[[].as_slice(); 4]; 4];
+    for (name, words) in SUMS.iter().zip(&mut words) {
         for (word, slot) in words.iter_mut().enumerate() {
             *slot = plane(&format!("sum.{name}.{word}"))?;
         }
-        for (at, pixel) in film.pixels.iter_mut().enumerate() {
-            let sum = ExactSum::from_words(words.map(|plane| plane[at]));
-            match i {
-                3 => pixel.weight = sum,
-                color => pixel.rgb[color] = sum,
-            }
-        }
     }
-    let counts = plane("count.drawn")?.iter().zip(plane("count.dropped")?);
-    for (pixel, (&drawn, &dropped)) in film.pixels.iter_mut().zip(counts) {
-        (pixel.drawn, pixel.dropped) = (drawn, dropped);
+    let (drawn, dropped) = (plane("count.drawn")?, plane("count.dropped")?);
+    let mut film = Film::new(shape, first);
+    for (at, pixel) in film.pixels.iter_mut().enumerate() {
+        let [r, g, b, weight] = words.map(|sum| ExactSum::from_words(sum.map(|plane| plane[at])));
+        *pixel = PixelSum { rgb: [r, g, b], weight, drawn: drawn[at], dropped: dropped[at] };
     }
     Ok(film)
 }

@@ -65,6 +65,9 @@ pub fn decode(text: &str, limits: &Limits) -> Result<Profile, MeshError> {
     let horizontal = numbers.list(horizontal, "horizontal angles")?;
     let mut candela = numbers.list(count, "candelas")?;
     candela.iter_mut().for_each(|c| *c = (*c * multiplier * ballast).max(0.0));
+    if !candela.iter().all(|c| c.is_finite()) {
+        return Err(MeshError::content("candelas and their factors are too large"));
+    }
     let ascends = |list: &[f32]| !list.is_empty() && list.windows(2).all(|pair| pair[0] < pair[1]);
     if !ascends(&vertical) || !ascends(&horizontal) {
         return Err(MeshError::content("angles must ascend"));
@@ -128,5 +131,6 @@ mod tests {
         assert!(decode(&SMALL.replace(" 3 2 1 2", " 3 2 2 2"), &limits).is_err());
         assert!(decode(&SMALL.replace("0 45 90", "0 45 45"), &limits).is_err());
         assert!(decode(&SMALL.replace(" 3 2 1 2", " 4000000000 2 1 2"), &limits).is_err());
+        assert!(decode(&SMALL.replace("1 1000 2", "1 1000 1e38"), &limits).is_err());
     }
 }

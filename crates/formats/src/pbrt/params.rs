@@ -10,6 +10,7 @@ use rustc_hash::FxHashSet;
 
 use super::lexer::{Lexer, Token};
 use super::state::Reader;
+use crate::spectrum_file;
 
 /// The values of a parameter.
 #[derive(Clone, Debug)]
@@ -328,12 +329,16 @@ fn bad(param: &PbrtParam, wanted: &str) -> SceneError {
 fn table(numbers: &[f64], param: &PbrtParam) -> Result<Tabulated, SceneError> {
     let lambda: Vec<f32> = numbers.iter().step_by(2).map(|&x| x as f32).collect();
     let values: Vec<f32> = numbers.iter().skip(1).step_by(2).map(|&x| x as f32).collect();
-    if numbers.is_empty() || lambda.len() != values.len() || lambda.windows(2).any(|pair| pair[0] >= pair[1])
-    {
+    let is_finite = lambda.iter().chain(&values).all(|x| x.is_finite());
+    let ascends = lambda.windows(2).all(|pair| pair[0] < pair[1]);
+    if numbers.is_empty() || lambda.len() != values.len() || !ascends || !is_finite {
         return Err(bad(param, "pairs of ascending wavelength and value"));
     }
-    // pbrt continues the first and last values to the ends of the spectrum.
-    let mut table = Tabulated { lambda, values };
+    Ok(to_the_ends(Tabulated { lambda, values }))
+}
+
+/// pbrt continues the first and last values to the ends of the spectrum.
+fn to_the_ends(mut table: Tabulated) -> Tabulated {
     if let (Some(&first), Some(&last)) = (table.values.first(), table.values.last()) {
         if table.lambda[0] > 360.0 {
             table.lambda.insert(0, 360.0);
@@ -344,7 +349,7 @@ fn table(numbers: &[f64], param: &PbrtParam) -> Result<Tabulated, SceneError> {
             table.values.push(last);
         }
     }
-    Ok(table)
+    table
 }
 
 /// A spectrum by name, or from a file of pairs.
@@ -361,9 +366,6 @@ fn named(name: &str, param: &PbrtParam, reader: &Reader<'_, '_>) -> Result<Spect
             at: param.span,
         });
     }
-    let bytes = crate::file::read_bytes(&path, reader.limits(), param.span)?;
-    let text = String::from_utf8_lossy(&bytes);
-    let words = text.lines().flat_map(|line| line.split('#').next().unwrap_or("").split_whitespace());
-    let numbers: Result<Vec<f64>, _> = words.map(|word| number(word, param.span)).collect();
-    Ok(SpectrumSource::Tabulated(Arc::new(table(&numbers?, param)?)))
+    let table = spectrum_file::read(&path, reader.limits(), param.span)?;
+    Ok(SpectrumSource::Tabulated(Arc::new(to_the_ends(table))))
 }

@@ -7,7 +7,7 @@ use aureole_spectrum::{SpectrumSource, Tabulated, blackbody, srgb_to_linear};
 
 use super::Parser;
 use super::element::Element;
-use crate::file;
+use crate::spectrum_file;
 
 /// The elements that make plain properties, for messages.
 const TAGS: [&str; 13] = [
@@ -171,20 +171,8 @@ fn spectrum_file(name: &str, at: Span, parser: &mut Parser<'_, '_>) -> Result<Sp
     let mut search = parser.search.clone();
     search.push_front(folder);
     let path = search.resolve(name);
-    let (_, text) = file::read_text(&path, &parser.context.options.limits, parser.context.sources, at)?;
-    let lines =
-        text.lines().map(|line| line.split('#').next().unwrap_or("").trim()).filter(|line| !line.is_empty());
-    let pairs = lines.map(|line| match numbers(line).as_deref() {
-        Some(&[lambda, value]) => Some((lambda as f32, value as f32)),
-        _ => None,
-    });
-    let table = pairs.collect::<Option<Vec<_>>>().and_then(table);
-    let message = "a wavelength and a value are expected on each line, ascending".to_owned();
-    table.map(|table| SpectrumSource::Tabulated(Arc::new(table))).ok_or(SceneError::Asset {
-        path,
-        message,
-        at,
-    })
+    let table = spectrum_file::read(&path, &parser.context.options.limits, at)?;
+    Ok(SpectrumSource::Tabulated(Arc::new(table)))
 }
 
 /// `<blackbody temperature="5000K" scale="1"/>` of old scenes.

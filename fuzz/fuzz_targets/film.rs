@@ -1,0 +1,3 @@
+#![no_main]
+
+aureole_fuzz::reader!("film");
