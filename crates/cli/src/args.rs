@@ -42,6 +42,31 @@ pub(crate) enum Command {
     Bench(BenchArgs),
 }
 
+impl Command {
+    /// Whether messages are for programs.
+    pub(crate) fn json(&self) -> bool {
+        match self {
+            Self::Render(args) => args.json,
+            Self::Info(args) => args.json,
+            Self::List(args) => args.json,
+            Self::Merge(args) => args.json,
+            Self::Diff(args) => args.json,
+            Self::Gallery(args) => args.json,
+            Self::Bench(_) => false,
+        }
+    }
+
+    /// How loud to be.
+    pub(crate) fn loudness(&self) -> Loudness {
+        match self {
+            Self::Render(args) => args.loudness,
+            Self::Info(args) => args.loudness,
+            Self::Gallery(args) => args.loudness,
+            Self::List(_) | Self::Merge(_) | Self::Diff(_) | Self::Bench(_) => Loudness::default(),
+        }
+    }
+}
+
 /// The scene and what is changed about it.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct SceneArgs {
@@ -168,7 +193,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "FILE", help_heading = "Long renders")]
     pub checkpoint: Option<PathBuf>,
     /// Time between two checkpoints, such as 90s, 5min, 1h
-    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "60s", help_heading = "Long renders")]
+    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "60s", requires = "checkpoint",
+        help_heading = "Long renders")]
     pub every: Duration,
     /// Go on from the checkpoint, if it is there
     #[arg(long, requires = "checkpoint", help_heading = "Long renders")]
@@ -261,6 +287,9 @@ pub(crate) struct MergeArgs {
     /// Curve from radiance to display (eight-bit formats)
     #[arg(long, default_value = "srgb")]
     pub tone: Tone,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `aureole diff`
@@ -317,6 +346,9 @@ pub(crate) struct GalleryArgs {
     /// Samples a pixel [default: each scene's]
     #[arg(long, value_name = "N", requires = "output", value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: Option<u32>,
+    /// Print the list as a JSON array; with `-o`, messages and progress as JSON objects on standard error
+    #[arg(long)]
+    pub json: bool,
     #[command(flatten)]
     pub loudness: Loudness,
 }

@@ -9,6 +9,7 @@ use aureole::image::{ImageError, ImageLimits, write_atomically};
 use aureole::render::{Film, FilmError, FilmFile, Fingerprint};
 use aureole::scene;
 
+use crate::claim::Claim;
 use crate::exit::{Exit, Failure};
 
 /// Bytes of a pixel in a film file, with some to spare.
@@ -80,6 +81,10 @@ pub(crate) fn read_film(path: &Path, shape: Option<scene::Film>) -> Result<FilmF
     })
 }
 
+fn not_written(path: &Path, why: &str) -> Failure {
+    Failure::new(Exit::Io, format!("cannot write `{}`: {why}", path.display()))
+}
+
 /// A file that holds what a render has so far.
 pub(crate) struct Checkpoint {
     path: PathBuf,
@@ -100,16 +105,19 @@ impl Checkpoint {
         &self.path
     }
 
-    /// Finds out, before the work begins, whether it may be written: what is there must be wanted.
-    pub(crate) fn check(path: &Path, is_resumed: bool) -> Result<(), Failure> {
+    /// Finds out, before the work begins, whether it may be written: what is there must be wanted. Until the claim is
+    /// dropped, no other process gets one.
+    pub(crate) fn check(path: &Path, is_resumed: bool) -> Result<Claim, Failure> {
+        let claim = Claim::new(path)?;
         if path.exists() && !is_resumed {
             let message = format!("the checkpoint `{}` exists already", path.display());
             return Err(Failure::usage(message).with_help("go on with `--resume`, or remove it"));
         }
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        tempfile::tempfile_in(folder.unwrap_or(Path::new(".")))
-            .map(drop)
-            .map_err(|error| Failure::write(path, &error))
+        match std::fs::metadata(path) {
+            Ok(meta) if !meta.is_file() => Err(not_written(path, "it is not a file")),
+            Ok(meta) if meta.permissions().readonly() => Err(not_written(path, "it is read-only")),
+            _ => Ok(claim),
+        }
     }
 
     /// The film to go on with; `None` where there is no file yet, so that a farm can always say `--resume`.

@@ -9,6 +9,8 @@ use miette::{
     Severity, SourceCode, SourceSpan, SpanContents,
 };
 
+use crate::exit::Failure;
+
 /// More messages than this of one kind are counted, not shown, unless everything is asked for.
 const SHOWN: usize = 20;
 /// Longer lines are cut around what is wrong with them: a mesh may be a single line of many megabytes.
@@ -41,6 +43,13 @@ impl Painter {
     /// An error that has no place.
     pub(crate) fn error(&self, message: &str, help: Option<&str>) {
         self.paint(&Message::new(Severity::Error, message, help.map(str::to_owned)));
+    }
+
+    /// Why the program gives up, unless that was shown already.
+    pub(crate) fn failure(&self, failure: &Failure) {
+        if let Failure::Plain { message, help, .. } = failure {
+            self.error(message, help.as_deref());
+        }
     }
 
     /// A warning that has no place.

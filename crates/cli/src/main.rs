@@ -4,6 +4,7 @@
 
 mod args;
 mod checkpoint;
+mod claim;
 mod command;
 mod diagnostics;
 mod exit;
@@ -19,36 +20,42 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::args::{Cli, Command, Loudness};
+use crate::args::{Cli, Command};
 use crate::diagnostics::Painter;
-use crate::exit::Failure;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    let (loudness, json) = match &cli.command {
-        Command::Render(args) => (args.loudness, args.json),
-        Command::Info(args) => (args.loudness, false),
-        Command::Gallery(args) => (args.loudness, false),
-        Command::List(_) | Command::Merge(_) | Command::Diff(_) | Command::Bench(_) => {
-            (Loudness::default(), false)
-        }
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return refuse(&error),
     };
+    let (loudness, json) = (cli.command.loudness(), cli.command.json());
     log::start(loudness, json);
     let painter = if json { Painter::Json } else { Painter::for_terminal() };
     let result = match &cli.command {
         Command::Render(args) => command::render::run(args, &painter),
         Command::Info(args) => command::info::run(args, &painter),
         Command::List(args) => command::list::run(args),
-        Command::Merge(args) => command::merge::run(args),
+        Command::Merge(args) => command::merge::run(args, &painter),
         Command::Diff(args) => command::diff::run(args),
         Command::Gallery(args) => command::gallery::run(args, &painter),
         Command::Bench(args) => command::bench::run(args).map(|()| exit::Exit::Done),
     };
     let exit = result.unwrap_or_else(|failure| {
-        if let Failure::Plain { message, help, .. } = &failure {
-            painter.error(message, help.as_deref());
-        }
+        painter.failure(&failure);
         failure.exit()
     });
     exit.into()
+}
+
+/// Tells what is wrong with the command line; to programs as they want it.
+fn refuse(error: &clap::Error) -> ExitCode {
+    let is_for_programs = std::env::args_os().any(|arg| arg == "--json");
+    if !(error.use_stderr() && is_for_programs) {
+        error.exit();
+    }
+    let text = error.to_string();
+    let (message, rest) = text.trim().split_once('\n').unwrap_or((text.trim(), ""));
+    let help = Some(rest.trim()).filter(|help| !help.is_empty());
+    Painter::Json.error(message.trim_start_matches("error: "), help);
+    exit::Exit::Usage.into()
 }

@@ -94,6 +94,18 @@ fn check_file(path: &Path) -> Result<(), Failure> {
     tempfile::tempfile_in(folder).map(drop).map_err(|error| Failure::write(path, &error))
 }
 
+/// Whether two names are of one file, be it there or not yet.
+pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        path.canonicalize().ok().or_else(|| {
+            let folder =
+                path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            Some(folder.canonicalize().ok()?.join(path.file_name()?))
+        })
+    };
+    a == b || place(a).is_some_and(|place_of_a| place(b) == Some(place_of_a))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -109,6 +121,17 @@ mod tests {
         std::fs::create_dir(folder.path().join("b.png")).unwrap();
         assert_eq!(exit("b.png"), Some(Exit::Io));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left behind");
+    }
+
+    #[test]
+    fn files_have_many_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a.exr", "./../b.exr"].map(|name| folder.path().join(name));
+        assert!(is_same_file(&a, &folder.path().join("./a.exr")));
+        assert!(!is_same_file(&a, &folder.path().join("b.exr")) && !is_same_file(&a, &b));
+        std::fs::write(&a, "").unwrap();
+        std::os::unix::fs::symlink(&a, folder.path().join("link.exr")).unwrap();
+        assert!(is_same_file(&a, &folder.path().join("link.exr")));
     }
 
     #[test]

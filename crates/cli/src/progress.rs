@@ -122,10 +122,20 @@ impl Observer for Watch<'_> {
     }
 
     fn film(&self, film: Film) {
-        // Trouble now may be over when the next one is due; the render is worth more.
-        if let Some(Err(Failure::Plain { message, .. })) = self.checkpoint.map(|file| file.write(film)) {
-            let help = "the render goes on, and the last checkpoint is as it was";
-            self.painter.warning(&message, Some(help));
+        let Some(checkpoint) = self.checkpoint else { return };
+        let least = film.drawn()[0];
+        match checkpoint.write(film) {
+            // Trouble now may be over when the next one is due; the render is worth more.
+            Err(Failure::Plain { message, .. }) => {
+                let help = "the render goes on, and the last checkpoint is as it was";
+                self.painter.warning(&message, Some(help));
+            }
+            _ if self.lines => print_line(&serde_json::json!({
+                "event": "checkpoint",
+                "file": checkpoint.path().display().to_string(),
+                "samples_per_pixel": least,
+            })),
+            _ => {}
         }
     }
 }

@@ -36,6 +36,7 @@ impl Fingerprint {
         }
 
         let mut hashes: BTreeMap<&str, Hash> = BTreeMap::new();
+        let mut files: BTreeMap<String, Vec<&Path>> = BTreeMap::new();
         let used_camera = desc.cameras.get(camera).copied();
         for (id, node) in desc.nodes() {
             let is_other_camera = node.family == Family::Camera && Some(id) != used_camera;
@@ -47,7 +48,10 @@ impl Fingerprint {
             for param in node.params.iter() {
                 if let Value::Path(path) = &param.value {
                     let name = path.file_name().unwrap_or_default().to_string_lossy();
-                    print.parts.entry(format!("file {name}")).or_insert_with(|| file_hash(path));
+                    let same_name = files.entry(format!("file {name}")).or_default();
+                    if !same_name.contains(&path.as_path()) {
+                        same_name.push(path);
+                    }
                 }
             }
         }
@@ -55,6 +59,18 @@ impl Fingerprint {
         hashes.entry(Family::Shape.name()).or_default().text(&roots);
         for (family, hash) in hashes {
             print.set(family, hash.finish());
+        }
+        for (name, paths) in files {
+            let value = match paths[..] {
+                [path] => file_hash(path),
+                // Files of one name in several folders.
+                _ => {
+                    let mut hash = Hash::default();
+                    paths.iter().for_each(|path| hash.text(&file_hash(path)));
+                    hash.finish()
+                }
+            };
+            print.set(&name, value);
         }
         print
     }
@@ -166,12 +182,14 @@ impl Hash {
     }
 
     fn mesh(&mut self, mesh: &Mesh) {
-        for list in [&mesh.positions, &mesh.normals] {
+        // All fields by name: a new one must not be forgotten.
+        let Mesh { positions, indices, normals, uvs, attributes } = mesh;
+        for list in [positions, normals] {
             self.words(list.as_flattened().iter().map(|x| x.to_le_bytes()));
         }
-        self.words(mesh.uvs.as_flattened().iter().map(|x| x.to_le_bytes()));
-        self.words(mesh.indices.as_flattened().iter().map(|x| x.to_le_bytes()));
-        for attribute in &mesh.attributes {
+        self.words(uvs.as_flattened().iter().map(|x| x.to_le_bytes()));
+        self.words(indices.as_flattened().iter().map(|x| x.to_le_bytes()));
+        for attribute in attributes {
             self.text(&format!("{} {:?} {}", attribute.name, attribute.domain, attribute.channels));
             self.words(attribute.data.iter().map(|x| x.to_le_bytes()));
         }
@@ -218,6 +236,25 @@ mod tests {
         let depth = plain.differences(&print(&[("integrator.max_depth", "5")], &options));
         assert!(depth.len() == 1 && depth[0].starts_with("integrator: #"), "{depth:?}");
         assert_eq!(plain.differences(&print(&[("filter.kind", "tent")], &options)).len(), 1);
+    }
+
+    #[test]
+    fn files_of_one_name_are_all_looked_at() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut desc = SceneDesc::default();
+        for name in ["a", "b", "a"] {
+            let path = folder.path().join(name).join("wood.png");
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(&path, name).unwrap();
+            let params = aureole_desc::Params::new().with("filename", Value::Path(path));
+            desc.add(Node::new(Family::Texture, "bitmap", params, aureole_desc::Span::NONE));
+        }
+        let print = || Fingerprint::new(&desc, &Film::new(8, 8), 0, &RenderOptions::default());
+        let before = print();
+        assert_eq!(before.differences(&print()), [""; 0]);
+        std::fs::write(folder.path().join("b/wood.png"), "other").unwrap();
+        let differences = before.differences(&print());
+        assert!(differences.len() == 1 && differences[0].starts_with("file wood.png: #"), "{differences:?}");
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub use film_file::{FilmError, FilmFile};
 pub use fingerprint::Fingerprint;
 pub use integrator::{Integrator, IntegratorManual, integrators};
 pub use memory::MemoryEstimate;
-pub use merge::{MergeError, Merger};
+pub use merge::{MergeError, Merger, Overlap};
 pub use render::{
     Observer, Progress, RenderOptions, RenderStats, Rendered, SampleId, Silent, render, resume,
 };

@@ -36,27 +36,35 @@ pub enum MergeError {
         /// How many there should be.
         wanted: u32,
     },
-    /// Samples that two parts have.
-    #[error("samples {}..{} are in both `{a}` and `{b}`", samples.start, samples.end)]
-    Doubled {
-        /// Which.
-        samples: Range<u32>,
-        /// One part.
-        a: String,
-        /// The other.
-        b: String,
-    },
-    /// Samples that no part has.
-    #[error("samples {} are missing", list(missing))]
-    Missing {
-        /// Which.
+    /// Samples that two parts have, or that no part has.
+    #[error("{}", problems(doubled, missing))]
+    Ranges {
+        /// What is there twice.
+        doubled: Vec<Overlap>,
+        /// What is not there.
         missing: Vec<Range<u32>>,
     },
 }
 
-fn list(ranges: &[Range<u32>]) -> String {
-    let words: Vec<_> = ranges.iter().map(|range| format!("{}..{}", range.start, range.end)).collect();
-    words.join(", ")
+/// Samples that two parts have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Overlap {
+    /// Which.
+    pub samples: Range<u32>,
+    /// One part.
+    pub a: String,
+    /// The other.
+    pub b: String,
+}
+
+fn problems(doubled: &[Overlap], missing: &[Range<u32>]) -> String {
+    let words = |range: &Range<u32>| format!("{}..{}", range.start, range.end);
+    let twice = doubled
+        .iter()
+        .map(|Overlap { samples, a, b }| format!("samples {} are in both `{a}` and `{b}`", words(samples)));
+    let nowhere: Vec<_> = missing.iter().map(words).collect();
+    let nowhere = (!nowhere.is_empty()).then(|| format!("samples {} are missing", nowhere.join(", ")));
+    twice.chain(nowhere).collect::<Vec<_>>().join("; ")
 }
 
 /// Adds parts as they come. The order does not matter: sums are exact.
@@ -100,25 +108,31 @@ impl Merger {
     /// The whole: every sample of the render, each once.
     ///
     /// # Errors
-    /// [`MergeError::Nothing`], [`MergeError::Doubled`] and [`MergeError::Missing`].
+    /// [`MergeError::Nothing`] and [`MergeError::Ranges`].
     pub fn finish(mut self) -> Result<FilmFile, MergeError> {
         let (film, fingerprint) = self.whole.ok_or(MergeError::Nothing)?;
         self.parts.sort_by_key(|(samples, _)| (samples.start, samples.end));
-        for pair in self.parts.windows(2) {
-            let [(before, a), (after, b)] = pair else { continue };
-            if after.start < before.end {
-                let samples = after.start..after.end.min(before.end);
-                return Err(MergeError::Doubled { samples, a: a.clone(), b: b.clone() });
+        let (mut doubled, mut missing) = (Vec::new(), Vec::new());
+        // The part that reaches farthest so far.
+        let (mut end, mut farthest) = (0, "");
+        for (samples, name) in &self.parts {
+            if samples.start > end {
+                missing.push(end..samples.start);
+            } else if samples.start < end {
+                let samples = samples.start..samples.end.min(end);
+                doubled.push(Overlap { samples, a: farthest.to_owned(), b: name.clone() });
+            }
+            if samples.end > end {
+                (end, farthest) = (samples.end, name);
             }
         }
-        let ends = [0].into_iter().chain(self.parts.iter().map(|(samples, _)| samples.end));
-        let starts = self.parts.iter().map(|(samples, _)| samples.start).chain([self.spp]);
-        let missing: Vec<_> =
-            ends.zip(starts).filter(|(end, start)| end < start).map(|(a, b)| a..b).collect();
-        if !missing.is_empty() {
-            return Err(MergeError::Missing { missing });
+        if end < self.spp {
+            missing.push(end..self.spp);
         }
-        Ok(FilmFile { film, fingerprint, samples: 0..self.spp, spp: self.spp })
+        if doubled.is_empty() && missing.is_empty() {
+            return Ok(FilmFile { film, fingerprint, samples: 0..self.spp, spp: self.spp });
+        }
+        Err(MergeError::Ranges { doubled, missing })
     }
 }
 
@@ -158,6 +172,11 @@ mod tests {
         assert_eq!(message(&[]), "there is nothing to merge");
         assert_eq!(message(std::slice::from_ref(&(3..5))), "samples 0..3, 5..8 are missing");
         assert_eq!(message(&[0..5, 3..8]), "samples 3..5 are in both `0..5` and `3..8`");
+        assert_eq!(
+            message(&[1..6, 2..3, 4..7]),
+            "samples 2..3 are in both `1..6` and `2..3`; samples 4..6 are in both `1..6` and `4..7`; \
+             samples 0..1, 7..8 are missing"
+        );
         let mut merger = Merger::default();
         merger.add(part(0..2, 0), "a").unwrap();
         let differs = merger.add(part(2..8, 1), "b").unwrap_err().to_string();

@@ -240,8 +240,7 @@ impl Job<'_> {
             // Each tile is taken once in a pass, so nobody waits here, but for somebody who copies it.
             self.render_tile(&mut worker, &mut lock(tile), pass.clone());
             self.report();
-            let is_late = self.limit.is_some_and(|limit| self.start.elapsed() >= limit);
-            if is_late || self.observer.should_stop() {
+            if self.should_end() {
                 self.stopped.store(true, Ordering::Relaxed);
             } else if self.observer.wants_film() {
                 self.observer.film(self.film(tiles));
@@ -256,38 +255,54 @@ impl Job<'_> {
         film
     }
 
-    /// Draws those samples of a pass that the tile does not have yet.
+    /// Draws those samples of a pass that the tile does not have yet, until the render is to end.
     fn render_tile(&self, worker: &mut Worker, tile: &mut FilmTile, pass: Range<u32>) {
+        // Batches are parts of a tile and of a pass: however large both are, a request to end is soon heard.
+        let Crop { width, height, .. } = tile.area;
+        let per_batch = (BATCH as u32 / (width * height)).max(1);
+        let rows = (BATCH as u32 / width).max(1);
+        for sample in pass.clone().step_by(per_batch as usize) {
+            let samples = sample..pass.end.min(sample.saturating_add(per_batch));
+            for y in (0..height).step_by(rows as usize) {
+                self.render_batch(worker, tile, &samples, y..height.min(y + rows));
+                if self.should_end() {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Whether the time is over, or somebody wants the render to end.
+    fn should_end(&self) -> bool {
+        self.limit.is_some_and(|limit| self.start.elapsed() >= limit) || self.observer.should_stop()
+    }
+
+    /// Draws samples of some rows of a tile.
+    fn render_batch(&self, worker: &mut Worker, tile: &mut FilmTile, samples: &Range<u32>, rows: Range<u32>) {
         let area = tile.area;
-        let per_batch = (BATCH as u32 / (area.width * area.height)).max(1);
-        let mut sample = pass.start;
-        while sample < pass.end {
-            let end = pass.end.min(sample.saturating_add(per_batch));
-            worker.clear();
-            for s in sample..end {
-                for y in 0..area.height {
-                    for x in 0..area.width {
-                        // A resumed film may have been stopped, or tiled, anywhere.
-                        if tile.drawn(x, y) <= s - self.samples.start {
-                            let id = SampleId { x: area.x + x, y: area.y + y, sample: s };
-                            worker.push(id, start_path(self.scene, self.seed, id));
-                        }
+        worker.clear();
+        for s in samples.clone() {
+            for y in rows.clone() {
+                for x in 0..area.width {
+                    // A resumed film may have been stopped, or tiled, anywhere.
+                    if tile.drawn(x, y) <= s - self.samples.start {
+                        let id = SampleId { x: area.x + x, y: area.y + y, sample: s };
+                        worker.push(id, start_path(self.scene, self.seed, id));
                     }
                 }
             }
-            worker.radiance.clear();
-            worker.radiance.resize(worker.starts.len(), Spectrum::ZERO);
-            let rays = worker.batch.trace(self.integrator, self.scene, &worker.starts, &mut worker.radiance);
-            for (i, radiance) in worker.radiance.iter().enumerate() {
-                let id = worker.ids[i];
-                if !tile.add(id.x - area.x, id.y - area.y, *radiance, worker.weights[i]) {
-                    self.note_non_finite(id);
-                }
-            }
-            self.drawn.fetch_add(worker.starts.len() as u64, Ordering::Relaxed);
-            self.rays.fetch_add(rays, Ordering::Relaxed);
-            sample = end;
         }
+        worker.radiance.clear();
+        worker.radiance.resize(worker.starts.len(), Spectrum::ZERO);
+        let rays = worker.batch.trace(self.integrator, self.scene, &worker.starts, &mut worker.radiance);
+        for (i, radiance) in worker.radiance.iter().enumerate() {
+            let id = worker.ids[i];
+            if !tile.add(id.x - area.x, id.y - area.y, *radiance, worker.weights[i]) {
+                self.note_non_finite(id);
+            }
+        }
+        self.drawn.fetch_add(worker.starts.len() as u64, Ordering::Relaxed);
+        self.rays.fetch_add(rays, Ordering::Relaxed);
     }
 
     /// Keeps the first of all samples that are not finite.

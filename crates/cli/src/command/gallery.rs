@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use aureole::formats::{GALLERY, GalleryScene};
+use serde::Serialize;
 
 use super::render;
 use crate::args::{GalleryArgs, RenderArgs, SceneArgs};
@@ -19,6 +20,7 @@ pub(crate) fn run(args: &GalleryArgs, painter: &Painter) -> Result<Exit, Failure
         (Some(folder), Some(scene)) => render_into(folder, scene, args, painter),
         (Some(folder), None) => render_all(folder, args, painter),
         (None, Some(scene)) => print(scene.text).map(|()| Exit::Done),
+        (None, None) if args.json => print(super::json_line(&entries())?).map(|()| Exit::Done),
         (None, None) => print(list()).map(|()| Exit::Done),
     }
 }
@@ -29,6 +31,20 @@ fn find(name: &str) -> Result<&'static GalleryScene, Failure> {
         let help = error.help().unwrap_or_else(|| "`aureole gallery` lists them".to_owned());
         Failure::usage(error.to_string()).with_help(help)
     })
+}
+
+/// A scene in the list.
+#[derive(Debug, Serialize)]
+struct Entry {
+    name: &'static str,
+    format: &'static str,
+    summary: &'static str,
+}
+
+fn entries() -> Vec<Entry> {
+    let entry =
+        |scene: &GalleryScene| Entry { name: scene.name, format: scene.format, summary: scene.summary };
+    GALLERY.iter().map(entry).collect()
 }
 
 fn list() -> String {
@@ -63,6 +79,7 @@ fn render_into(
         output: Some(folder.join(scene.name).with_extension("png")),
         spp: args.spp,
         loudness: args.loudness,
+        json: args.json,
         ..RenderArgs::default()
     };
     render::run(&render_args, painter)

@@ -6,14 +6,16 @@ use std::path::PathBuf;
 use aureole::image::{Image, ToneMapping, WriteOptions};
 use aureole::render::{Film, RenderOptions, RenderStats, resume};
 use serde::Serialize;
+use serde_json::json;
 
 use super::debug_pixel;
 use crate::args::{Color, RenderArgs, StatsFormat};
 use crate::checkpoint::{Checkpoint, Identity};
+use crate::claim::Claim;
 use crate::diagnostics::Painter;
 use crate::exit::{self, Exit, Failure};
 use crate::memory;
-use crate::output::{Output, print};
+use crate::output::{Output, is_same_file, print};
 use crate::progress::{Show, Watch, duration, print_line, quantity};
 use crate::session::{self, Session};
 use crate::signals::Signals;
@@ -36,8 +38,8 @@ struct Stats {
 
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, painter: &Painter) -> Result<Exit, Failure> {
-    let output = check(args)?;
     let signals = Signals::listen();
+    let Checked { output, claim: _claim } = check(args)?;
     limit_threads(args.threads);
     let mut options = render_options(args);
     let films_of = (args.checkpoint.is_some() || is_part(args)).then_some(&options);
@@ -50,6 +52,7 @@ pub(crate) fn run(args: &RenderArgs, painter: &Painter) -> Result<Exit, Failure>
         Some(output) => output,
         None => default_output(&session, is_part(args).then_some(&samples))?,
     };
+    check_apart(args, &output)?;
     if args.loudness.verbose > 0 && !args.json {
         describe(&session);
     }
@@ -68,6 +71,7 @@ pub(crate) fn run(args: &RenderArgs, painter: &Painter) -> Result<Exit, Failure>
         (false, true) => Show::Nothing,
         (false, false) => Show::Bar,
     };
+    signals.be_patient();
     let watch = Watch::new(signals.clone(), show, args.time, checkpoint.as_ref(), painter);
     let rendered = resume(&session.scene, &options, film, &watch);
     watch.finish();
@@ -129,18 +133,29 @@ fn begin(
     let Some(checkpoint) = checkpoint.filter(|_| args.resume) else { return Ok(Film::new(shape, first)) };
     let film = checkpoint.film(shape)?;
     let path = checkpoint.path().display();
-    let told = match &film {
-        Some(film) => format!("going on from `{path}`, at {} samples a pixel\n", film.drawn()[0]),
-        None => format!("`{path}` does not exist yet: starting anew\n"),
-    };
-    if !args.loudness.quiet && !args.json {
-        eprint(&told);
+    let least = film.as_ref().map_or(0, |film| film.drawn()[0]);
+    if args.json {
+        let file = path.to_string();
+        print_line(&json!({ "event": "resumed", "file": file, "samples_per_pixel": least }));
+    } else if !args.loudness.quiet {
+        eprint(&match &film {
+            Some(_) => format!("going on from `{path}`, at {least} samples a pixel\n"),
+            None => format!("`{path}` does not exist yet: starting anew\n"),
+        });
     }
     Ok(film.unwrap_or_else(|| Film::new(shape, first)))
 }
 
-/// Finds what is wrong with the command line before any work is done. Without `-o`, the output is known only later.
-fn check(args: &RenderArgs) -> Result<Option<Output>, Failure> {
+/// What is known before any work is done.
+struct Checked {
+    /// Without `-o`, the output is known only later.
+    output: Option<Output>,
+    /// The claim on the checkpoint.
+    claim: Option<Claim>,
+}
+
+/// Finds what is wrong with the command line before any work is done.
+fn check(args: &RenderArgs) -> Result<Checked, Failure> {
     if args.color == Color::Spectral {
         return Err(Failure::usage("spectral rendering comes with a later version")
             .with_help("`--color rgb` is what there is"));
@@ -156,10 +171,21 @@ fn check(args: &RenderArgs) -> Result<Option<Output>, Failure> {
     if is_part(args) {
         check_part(args, output.as_ref())?;
     }
-    if let Some(path) = &args.checkpoint {
-        Checkpoint::check(path, args.resume)?;
+    let Some(path) = &args.checkpoint else { return Ok(Checked { output, claim: None }) };
+    output.iter().try_for_each(|output| check_apart(args, output))?;
+    let claim = Some(Checkpoint::check(path, args.resume)?);
+    Ok(Checked { output, claim })
+}
+
+/// An image must not replace the checkpoint; a part may, being a film too.
+fn check_apart(args: &RenderArgs, output: &Output) -> Result<(), Failure> {
+    match (output, &args.checkpoint) {
+        (Output::File(image), Some(checkpoint)) if !is_part(args) && is_same_file(image, checkpoint) => {
+            Err(Failure::usage("the image would replace the checkpoint")
+                .with_help("name different files with `-o` and `--checkpoint`"))
+        }
+        _ => Ok(()),
     }
-    Ok(output)
 }
 
 /// A part's film needs a format that keeps it, and says how many samples there are.
@@ -261,7 +287,7 @@ fn tell(
         file: output.to_string(),
     };
     if args.json {
-        print_line(&serde_json::json!({ "event": "done", "stats": figures }));
+        print_line(&json!({ "event": "done", "stats": figures }));
     }
     match args.stats {
         Some(StatsFormat::Json) => print(super::json_line(&figures)?),

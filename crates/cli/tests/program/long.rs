@@ -51,7 +51,41 @@ fn parts_that_do_not_make_a_whole_are_refused() {
     program.fails("merge image.exr -o m.exr", 3, &["image.exr", "no film"]);
     program.fails("merge ball.xml -o m.exr", 3, &["ball.xml"]);
     program.fails("merge missing.exr -o m.exr", 3, &["missing.exr"]);
+    // Everything that is wrong is told at once, and a part is never overwritten.
+    let several = "merge 5-0.exr image.exr seed.exr missing.exr -o m.exr";
+    program.fails(several, 3, &["image.exr", "seed: 9, here 0", "missing.exr"]);
+    program.fails(
+        "merge 5-0.exr 5-0.exr 5-3.exr -o m.exr",
+        3,
+        &["0..6 are in both", "6..19, 25..32 are missing"],
+    );
+    program.fails("merge 5-0.exr 5-1.exr -o ./5-1.exr", 2, &["would replace the part `5-1.exr`"]);
     assert!(!program.path().join("m.exr").exists());
+}
+
+#[test]
+fn a_merge_for_programs() {
+    let program = Program::with_ball("");
+    render_parts(&program, 2);
+    let merged = program.ok("merge 2-1.exr 2-0.exr -o m.exr --json").json();
+    assert_eq!((&merged["parts"], &merged["samples_per_pixel"]), (&2.into(), &32.into()));
+    let refused = program.run("merge 2-1.exr -o m.exr --json");
+    let error: serde_json::Value = serde_json::from_str(&refused.stderr).expect("one JSON object");
+    assert_eq!(error["message"], "samples 0..16 are missing");
+    assert_eq!(refused.code, Some(3));
+}
+
+#[test]
+fn a_merge_that_cannot_be_written_leaves_what_was_there() {
+    let program = Program::with_ball("");
+    render_parts(&program, 2);
+    program.write("m.pfm", "an older picture");
+    let merge = "merge 2-1.exr 2-0.exr -o m.pfm";
+    let output = on_a_full_disk(&program, merge, 4);
+    assert_eq!(output.status.code(), Some(4));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write `m.pfm`"));
+    assert_eq!(program.read("m.pfm"), b"an older picture");
+    program.ok(merge);
 }
 
 #[test]
@@ -148,7 +182,14 @@ fn interrupted_renders_lose_nothing() {
     }
 }
 
-/// No file may grow beyond a few blocks: what a full disk is to a program.
+/// Runs the program where no file may grow beyond a few blocks: what a full disk is to it.
+#[cfg(unix)]
+fn on_a_full_disk(program: &Program, args: &str, blocks: u32) -> std::process::Output {
+    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec {} {args}", env!("CARGO_BIN_EXE_aureole"));
+    let mut shell = std::process::Command::new("sh");
+    shell.args(["-c", &script]).current_dir(program.path()).output().expect("sh")
+}
+
 #[cfg(unix)]
 #[test]
 fn a_full_disk_leaves_the_old_checkpoint() {
@@ -156,12 +197,7 @@ fn a_full_disk_leaves_the_old_checkpoint() {
     program.ok("render ball.xml --spp 2 --checkpoint film.exr -o two.exr");
     let before = program.read("film.exr");
     let render = "render ball.xml --spp 4 --checkpoint film.exr --resume -o four.exr";
-    let script = format!("trap '' XFSZ; ulimit -f 8; exec {} {render}", env!("CARGO_BIN_EXE_aureole"));
-    let output = std::process::Command::new("sh")
-        .args(["-c", &script])
-        .current_dir(program.path())
-        .output()
-        .expect("sh");
+    let output = on_a_full_disk(&program, render, 8);
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(4), "{message}");
     assert!(message.contains("cannot write"), "{message}");
@@ -169,6 +205,55 @@ fn a_full_disk_leaves_the_old_checkpoint() {
     program.ok(render);
     program.ok("render ball.xml --spp 4 -o whole.exr");
     assert_eq!(program.read("four.exr"), program.read("whole.exr"));
+}
+
+#[test]
+fn checkpoints_and_images_are_different_files() {
+    let program = Program::with_ball("");
+    program.fails("render ball.xml --checkpoint a.exr -o ./a.exr", 2, &["would replace the checkpoint"]);
+    program.fails("render ball.xml --checkpoint ball.png", 2, &["would replace the checkpoint"]);
+    program.fails("render ball.xml --every 5s", 2, &["--checkpoint"]);
+    // A part is a film as a checkpoint is.
+    program.ok("render ball.xml --spp 4 --shard 0/2 --checkpoint part.exr -o part.exr");
+    program.ok("render ball.xml --spp 4 --samples 2..4 -o other.exr");
+    program.ok("merge other.exr part.exr -o whole.exr");
+    std::fs::create_dir(program.path().join("folder")).expect("a writable folder");
+    program.fails("render ball.xml --checkpoint folder --resume", 4, &["folder", "not a file"]);
+    program.fails("render ball.xml --checkpoint no/such/film.exr", 4, &["no/such/film.exr"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn two_processes_do_not_share_a_checkpoint() {
+    let program = Program::with_ball("");
+    let render = "render ball.xml --checkpoint film.exr --resume";
+    let mut child =
+        program.command(&format!("{render} --spp 100000000 --every 1ms -q")).spawn().expect("a program");
+    while !program.path().join("film.exr").exists() && child.try_wait().expect("a child").is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    program.fails(render, 4, &["film.exr", "in use by another process"]);
+    program.ok("render ball.xml --checkpoint other.exr");
+    child.kill().expect("a child");
+    child.wait().expect("a child");
+    // Whoever is dead holds nothing.
+    program.fails(render, 3, &["already, only 4"]);
+}
+
+/// However large the tiles are: a request to end is heard after a few samples.
+#[cfg(unix)]
+#[test]
+fn requests_to_end_are_heard_within_a_tile() {
+    let program = Program::with_ball("");
+    // One tile, one pass: 16 samples for each of a million pixels.
+    let args = "render ball.xml --resolution 1024x1024 --tile 1024 --spp 1000000 --threads 1 -o a.exr --json";
+    let mut child = program.command(args).stderr(std::process::Stdio::null()).spawn().expect("a program");
+    std::thread::sleep(std::time::Duration::from_secs(1));
+    let start = std::time::Instant::now();
+    let kill = std::process::Command::new("kill").args(["-s", "TERM", &child.id().to_string()]).status();
+    assert!(kill.is_ok_and(|status| status.success()));
+    assert_eq!(child.wait().expect("a child").code(), Some(143));
+    println!("{:?}", start.elapsed());
 }
 
 /// Renders a scene with other threads and tiles, which must not show.

@@ -29,6 +29,34 @@ fn messages_progress_and_log_as_json_lines() {
 }
 
 #[test]
+fn wrong_usage_and_lists_as_json_too() {
+    let program = Program::with_ball("");
+    let outcome = program.run("render ball.xml --json --sp 4");
+    assert_eq!(outcome.code, Some(2));
+    let errors = events(&outcome.stderr, "error");
+    assert!(errors[0]["message"].as_str().is_some_and(|text| text.contains("'--sp'")), "{errors:?}");
+    assert!(errors[0]["help"].as_str().is_some_and(|text| text.contains("--spp")), "{errors:?}");
+    for command in ["info missing.xml --json", "diff a.exr b.exr --json", "render missing.xml --json"] {
+        let outcome = program.run(command);
+        assert_eq!((outcome.code, events(&outcome.stderr, "error").len()), (Some(3), 1), "{command}");
+    }
+    assert_eq!(events(&program.run("list sfere --json").stderr, "error").len(), 1);
+    let gallery = program.ok("gallery --json").json();
+    assert_eq!(gallery[0]["name"], "cornell-box");
+}
+
+#[test]
+fn checkpoints_are_told_to_programs() {
+    let program = Program::with_ball("");
+    let render = "render ball.xml --json --checkpoint film.exr --resume --every 1ms --spp";
+    let first = program.ok(&format!("{render} 300"));
+    assert_eq!(events(&first.stderr, "resumed")[0]["samples_per_pixel"], 0);
+    assert!(!events(&first.stderr, "checkpoint").is_empty(), "{}", first.stderr);
+    let again = program.ok(&format!("{render} 301"));
+    assert_eq!(events(&again.stderr, "resumed")[0]["samples_per_pixel"], 300);
+}
+
+#[test]
 fn long_renders_tell_how_far_they_are() {
     let program = Program::with_ball("");
     let outcome = program.ok("render ball.xml --json --time 2.5 --resolution 200x200");
