@@ -19,6 +19,7 @@
 mod big;
 mod binary;
 mod bvh;
+mod caller;
 mod config;
 mod error;
 mod grid;

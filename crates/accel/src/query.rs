@@ -7,45 +7,56 @@ use std::marker::PhantomData;
 use aureole_math::Ray;
 
 use crate::bvh::{Bvh8, Leaf, PACKET, Packet, VisitLeaf, VisitPacket};
+use crate::caller::Caller;
 use crate::index::Index;
 use crate::simd::{self, Kernel, Simd, lanes};
 use crate::triangle::{Block, Fast, TriangleTest, Watertight};
 use crate::world::Object;
 use crate::{Accuracy, Hit, NO_INSTANCE, UserShapes, World};
 
-/// The nearest hit of one ray.
-#[inline]
-pub(crate) fn closest_hit<U: UserShapes>(world: &World, ray: &Ray, user: &U) -> Hit {
-    match world.accuracy {
-        Accuracy::Watertight => simd::run(ClosestOne::<U, Watertight>(world, ray, user, PhantomData)),
-        Accuracy::Fast => simd::run(ClosestOne::<U, Fast>(world, ray, user, PhantomData)),
-    }
+/// Defines a query: a kernel for each of the two kinds of callers and triangle tests, compiled here for all callers.
+macro_rules! query {
+    ($(#[$doc:meta])* $name:ident($($arg:ident: $Arg:ty),*) $(-> $Output:ty)?, $Kernel:ident) => {
+        $(#[$doc])*
+        #[inline]
+        pub(crate) fn $name<U: UserShapes>(world: &World, $($arg: $Arg,)* user: &U) $(-> $Output)? {
+            fn by_accuracy<const FILTERS: bool>(world: &World, $($arg: $Arg,)* user: Caller<'_, FILTERS>) $(-> $Output)? {
+                match world.accuracy {
+                    Accuracy::Watertight => simd::run($Kernel::<_, Watertight>(world, $($arg,)* &user, PhantomData)),
+                    Accuracy::Fast => simd::run($Kernel::<_, Fast>(world, $($arg,)* &user, PhantomData)),
+                }
+            }
+            fn plain(world: &World, $($arg: $Arg,)* user: Caller<'_, false>) $(-> $Output)? {
+                by_accuracy(world, $($arg,)* user)
+            }
+            fn filtered(world: &World, $($arg: $Arg,)* user: Caller<'_, true>) $(-> $Output)? {
+                by_accuracy(world, $($arg,)* user)
+            }
+            if U::HAS_FILTER {
+                filtered(world, $($arg,)* Caller::new(user))
+            } else {
+                plain(world, $($arg,)* Caller::new(user))
+            }
+        }
+    };
 }
 
-/// Whether one ray hits anything.
-#[inline]
-pub(crate) fn is_occluded<U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
-    match world.accuracy {
-        Accuracy::Watertight => simd::run(OccludedOne::<U, Watertight>(world, ray, user, PhantomData)),
-        Accuracy::Fast => simd::run(OccludedOne::<U, Fast>(world, ray, user, PhantomData)),
-    }
-}
-
-/// The nearest hits of rays.
-pub(crate) fn closest_hits<U: UserShapes>(world: &World, rays: &[Ray], hits: &mut [Hit], user: &U) {
-    match world.accuracy {
-        Accuracy::Watertight => simd::run(Closest::<U, Watertight>(world, rays, hits, user, PhantomData)),
-        Accuracy::Fast => simd::run(Closest::<U, Fast>(world, rays, hits, user, PhantomData)),
-    }
-}
-
-/// Whether rays hit anything.
-pub(crate) fn occluded<U: UserShapes>(world: &World, rays: &[Ray], blocked: &mut [bool], user: &U) {
-    match world.accuracy {
-        Accuracy::Watertight => simd::run(Occluded::<U, Watertight>(world, rays, blocked, user, PhantomData)),
-        Accuracy::Fast => simd::run(Occluded::<U, Fast>(world, rays, blocked, user, PhantomData)),
-    }
-}
+query!(
+    /// The nearest hit of one ray.
+    closest_hit(ray: &Ray) -> Hit, ClosestOne
+);
+query!(
+    /// Whether one ray hits anything.
+    is_occluded(ray: &Ray) -> bool, OccludedOne
+);
+query!(
+    /// The nearest hits of rays.
+    closest_hits(rays: &[Ray], hits: &mut [Hit]), Closest
+);
+query!(
+    /// Whether rays hit anything.
+    occluded(rays: &[Ray], blocked: &mut [bool]), Occluded
+);
 
 struct ClosestOne<'a, U, T>(&'a World, &'a Ray, &'a U, PhantomData<T>);
 
