@@ -104,14 +104,34 @@ impl Fingerprint {
 
     /// As lines of text.
     pub fn to_text(&self) -> String {
-        self.parts.iter().map(|(name, value)| format!("{name}\t{value}\n")).collect()
+        self.parts.iter().map(|(name, value)| format!("{}\t{}\n", escape(name), escape(value))).collect()
     }
 
     /// From lines of text; what is none is left out.
     pub fn from_text(text: &str) -> Self {
-        let pairs = text.lines().filter_map(|line| line.split_once('\t'));
-        Self { parts: pairs.map(|(name, value)| (name.to_owned(), value.to_owned())).collect() }
+        let pairs = text.split('\n').filter_map(|line| line.split_once('\t'));
+        Self { parts: pairs.map(|(name, value)| (unescape(name), unescape(value))).collect() }
     }
+}
+
+/// Names of files may hold anything, even what parts lines.
+fn escape(text: &str) -> String {
+    text.replace('\\', r"\\").replace('\n', r"\n").replace('\t', r"\t")
+}
+
+fn unescape(text: &str) -> String {
+    let mut chars = text.chars();
+    let next = || {
+        Some(match chars.next()? {
+            '\\' => match chars.next()? {
+                'n' => '\n',
+                't' => '\t',
+                other => other,
+            },
+            plain => plain,
+        })
+    };
+    std::iter::from_fn(next).collect()
 }
 
 /// Digits of a hash: 128 bits, so that no two scenes meet by chance.
@@ -236,6 +256,15 @@ mod tests {
         let depth = plain.differences(&print(&[("integrator.max_depth", "5")], &options));
         assert!(depth.len() == 1 && depth[0].starts_with("integrator: #"), "{depth:?}");
         assert_eq!(plain.differences(&print(&[("filter.kind", "tent")], &options)).len(), 1);
+    }
+
+    #[test]
+    fn parts_may_have_any_names() {
+        let mut print = Fingerprint::default();
+        for name in ["file a\tb.png", "file a\nb.png", "file a\r.png", "file \\n", "\\", ""] {
+            print.set(name, name);
+        }
+        assert_eq!(Fingerprint::from_text(&print.to_text()), print);
     }
 
     #[test]
