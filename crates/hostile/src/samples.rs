@@ -23,10 +23,14 @@ pub struct Sample {
 pub fn of(target: &str) -> Vec<Sample> {
     match target {
         "pbrt" | "pbrt_render" => {
-            texts(&gallery("pbrt"), &[("features", include_str!("../samples/features.pbrt"))])
+            let everything = without_files(include_str!("../../formats/tests/data/everything.pbrt"));
+            let features = include_str!("../samples/features.pbrt");
+            texts(&gallery("pbrt"), &[("features", features), ("everything", &everything)])
         }
         "mitsuba" | "mitsuba_render" => {
-            texts(&gallery("mitsuba"), &[("features", include_str!("../samples/features.xml"))])
+            let features = include_str!("../samples/features.xml");
+            let elements = include_str!("../samples/elements.xml");
+            texts(&gallery("mitsuba"), &[("features", features), ("elements", elements)])
         }
         "ply" => vec![
             sample("ascii", include_bytes!("../samples/quad.ply")),
@@ -60,6 +64,12 @@ pub(crate) fn sample(name: &str, bytes: &[u8]) -> Sample {
 
 fn texts(lists: &[(&str, &str)], more: &[(&str, &str)]) -> Vec<Sample> {
     lists.iter().chain(more).map(|(name, text)| sample(name, text.as_bytes())).collect()
+}
+
+/// A pbrt scene without the lines that ask for files which must be there.
+fn without_files(text: &str) -> String {
+    let asks = |line: &&str| [".pbrt\"", ".ply\"", ".ies\""].iter().any(|suffix| line.contains(suffix));
+    text.lines().filter(|line| !asks(line)).flat_map(|line| [line, "\n"]).collect()
 }
 
 fn gallery(format: &str) -> Vec<(&'static str, &'static str)> {
@@ -226,7 +236,23 @@ fn images() -> Vec<Sample> {
 
 #[cfg(test)]
 mod tests {
+    use aureole::desc::{Report, Sources};
+    use aureole::formats::load_text;
+
     use crate::targets;
+
+    /// Damage to a scene that is refused anyway would show nothing.
+    #[test]
+    fn sample_scenes_are_read_without_an_error() {
+        for (target, format) in [("pbrt", "pbrt"), ("mitsuba", "mitsuba")] {
+            for sample in super::of(target) {
+                let text = String::from_utf8(sample.bytes).unwrap();
+                let (mut sources, mut report) = (Sources::default(), Report::default());
+                let read = load_text(format, "scene", &text, &Default::default(), &mut sources, &mut report);
+                assert!(read.is_ok() && report.errors.is_empty(), "{}: {read:?} {report:?}", sample.name);
+            }
+        }
+    }
 
     #[test]
     fn every_target_has_samples_and_every_image_format_is_among_them() {

@@ -31,11 +31,31 @@ const NUMBERS: &[f64] = &[
     f64::NAN,
     f64::INFINITY,
 ];
-const INTEGERS: &[i64] = &[1, 2, 0, 3, 4, -1, 8, 16, 5, 100, i64::MAX, i64::MIN, 1 << 31, 1 << 20];
+const INTEGERS: &[i64] = &[1, 2, 0, 3, 4, -1, 8, 16, 5, 100, i64::MAX, i64::MIN, 1 << 31, 1 << 20, 12, 1000];
 /// Words that mean something to some element.
 const WORDS: &[&str] = &[
-    "ggx", "beckmann", "Au", "none", "bk7", "repeat", "clamp", "nearest", "srgb", "x", "diagonal", "smooth",
+    "ggx",
+    "beckmann",
+    "Au",
+    "none",
+    "bk7",
+    "repeat",
+    "clamp",
+    "nearest",
+    "srgb",
+    "x",
+    "diagonal",
+    "smooth",
     "nonsense",
+    "none",
+    "loop",
+    "catmull_clark",
+    "flat",
+    "ribbon",
+    "cylinder",
+    "bezier",
+    "bspline",
+    "linear",
 ];
 
 /// Reads choices from bytes; where they end, every choice is the first one.
@@ -136,7 +156,12 @@ fn fitting(choices: &mut Choices<'_>, doc: &ParamDoc, ids: &[NodeId]) -> Value {
         "bool" => Value::Bool(choices.below(2) == 1),
         "int" => Value::Int(choices.of(INTEGERS)),
         "float" | "float or name" | "float or pair" => Value::Float(choices.number()),
-        "string" => Value::String(choices.of(WORDS).to_owned()),
+        "string" => {
+            // What the manual quotes are the words that mean something.
+            let quoted: Vec<&str> = doc.doc.split('`').skip(1).step_by(2).collect();
+            let known = if quoted.is_empty() || choices.below(8) == 0 { WORDS } else { &quoted };
+            Value::String(choices.of(known).to_owned())
+        }
         "point" | "vector" => Value::Vec3(choices.numbers()),
         "spectrum" => Value::Spectrum(SpectrumSource::Rgb(choices.numbers().map(|x: f64| x as f32))),
         "transform" => Value::Transform(transform(choices)),
