@@ -2,15 +2,16 @@
 //!
 //! All of it insists on being inlined, so that it is compiled as a whole for each instruction set.
 
+mod packet;
+
 use std::marker::PhantomData;
 
 use aureole_math::Ray;
 
-use crate::bvh::{Bvh8, Leaf, PACKET, Packet, VisitLeaf, VisitPacket};
+use crate::bvh::{Leaf, PACKET, VisitLeaf};
 use crate::caller::Caller;
-use crate::index::Index;
-use crate::simd::{self, Kernel, Simd, lanes};
-use crate::triangle::{Block, Fast, TriangleTest, Watertight};
+use crate::simd::{self, Floats, Kernel, Simd, lanes};
+use crate::triangle::{Block, Fast, LANES, TriangleTest, Watertight};
 use crate::world::Object;
 use crate::{Accuracy, Hit, NO_INSTANCE, UserShapes, World};
 
@@ -86,67 +87,8 @@ impl<U: UserShapes, T: TriangleTest> Kernel for Closest<'_, U, T> {
     fn run<S: Simd>(self) {
         let Self(world, rays, hits, user, _) = self;
         for (rays, hits) in rays.chunks(PACKET).zip(hits.chunks_mut(PACKET)) {
-            match Coherent::<S>::new(world, rays) {
-                Some(coherent) => closest_of_packet::<S, T, U>(world, &coherent, hits, user),
-                None => {
-                    for (ray, hit) in rays.iter().zip(hits) {
-                        *hit = closest::<S, T, U>(world, ray, user);
-                    }
-                }
-            }
+            packet::closest_of::<S, T, U>(world, rays, hits, user);
         }
-    }
-}
-
-/// Rays of about one direction, and a hierarchy that can be walked with all of them.
-struct Coherent<'a, S: Simd> {
-    rays: &'a [Ray; PACKET],
-    packet: Packet<S>,
-    bvh: &'a Bvh8,
-}
-
-impl<'a, S: Simd> Coherent<'a, S> {
-    #[inline(always)]
-    fn new(world: &'a World, rays: &'a [Ray]) -> Option<Self> {
-        match (&world.triangles, <&[Ray; PACKET]>::try_from(rays)) {
-            (Index::Wide(bvh), Ok(rays)) => Some(Self { rays, packet: Packet::new(rays)?, bvh }),
-            _ => None,
-        }
-    }
-}
-
-/// The nearest hits of rays of about one direction.
-#[inline(always)]
-fn closest_of_packet<S: Simd, T: TriangleTest, U: UserShapes>(
-    world: &World,
-    coherent: &Coherent<'_, S>,
-    hits: &mut [Hit],
-    user: &U,
-) {
-    let rays = coherent.rays;
-    if !coherent.bvh.is_met_by(&coherent.packet) {
-        for (ray, hit) in rays.iter().zip(hits) {
-            let none = Hit { t: ray.t_max, ..Hit::NONE };
-            *hit = closest_after_triangles::<S, U>(world, ray, none, user);
-        }
-        return;
-    }
-    // No arrays' `map` here: it would not be compiled for the instruction set.
-    let mut tests = [T::new(&rays[0]); PACKET];
-    let mut nearest = [Candidate { t: 0.0, u: 0.0, v: 0.0, id: 0 }; PACKET];
-    let mut ends = [0.0; PACKET];
-    for (i, ray) in rays.iter().enumerate() {
-        tests[i] = T::new(ray);
-        nearest[i].t = ray.t_max;
-        ends[i] = ray.t_max;
-    }
-    let side_by_side = coherent.packet.side_by_side(rays);
-    let together = T::together(&tests, &side_by_side);
-    let mut among = NearestTriangles { world, user, rays, tests, together, nearest };
-    coherent.bvh.walk_packet(&coherent.packet, &side_by_side, &mut ends, &mut among);
-    for (i, hit) in hits.iter_mut().enumerate() {
-        let best = among.search(i).best();
-        *hit = closest_after_triangles::<S, U>(world, &rays[i], best, user);
     }
 }
 
@@ -157,40 +99,43 @@ impl<U: UserShapes, T: TriangleTest> Kernel for Occluded<'_, U, T> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let Self(world, rays, blocked, user, _) = self;
-        for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = any::<S, T, U>(world, ray, user);
+        for (rays, blocked) in rays.chunks(PACKET).zip(blocked.chunks_mut(PACKET)) {
+            packet::any_of::<S, T, U>(world, rays, blocked, user);
         }
     }
 }
 
 #[inline(always)]
 fn closest<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, user: &U) -> Hit {
-    let mut best = Hit { t: ray.t_max, ..Hit::NONE };
+    let mut best = Hit::NONE;
     if !world.blocks.is_empty() {
         let mut among = NearestTriangle::new(world, user, ray, T::new(ray));
         world.triangles.walk::<S, _>(ray, ray.t_max, &mut among);
         best = among.best();
     }
-    closest_after_triangles::<S, U>(world, ray, best, user)
+    if world.objects.is_empty() { best } else { closest_after_objects::<S, U>(world, ray, best, user) }
 }
 
-/// Goes on among everything else.
+/// The nearest of a hit and those with everything else.
 #[inline(always)]
-fn closest_after_triangles<S: Simd, U: UserShapes>(world: &World, ray: &Ray, mut best: Hit, user: &U) -> Hit {
-    if !world.objects.is_empty() {
-        let mut among = NearestObject { world, user, ray, best };
-        world.object_index.walk::<S, _>(ray, best.t, &mut among);
-        best = among.best;
-    }
-    if best.is_some() { best } else { Hit::NONE }
+fn closest_after_objects<S: Simd, U: UserShapes>(world: &World, ray: &Ray, best: Hit, user: &U) -> Hit {
+    let t = if best.is_some() { best.t } else { ray.t_max };
+    let mut among = NearestObject { world, user, ray, best: Hit { t, ..best } };
+    world.object_index.walk::<S, _>(ray, t, &mut among);
+    if among.best.is_some() { among.best } else { Hit::NONE }
 }
 
 #[inline(always)]
 fn any<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
     let mut triangle = AnyTriangle { world, user, ray, test: T::new(ray), blocked: false };
     world.triangles.walk::<S, _>(ray, ray.t_max, &mut triangle);
-    if triangle.blocked || world.objects.is_empty() {
-        return triangle.blocked;
+    triangle.blocked || any_object::<S, U>(world, ray, user)
+}
+
+#[inline(always)]
+fn any_object<S: Simd, U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
+    if world.objects.is_empty() {
+        return false;
     }
     let mut object = AnyObject { world, user, ray, blocked: false };
     world.object_index.walk::<S, _>(ray, ray.t_max, &mut object);
@@ -239,8 +184,13 @@ impl<'a, U: UserShapes, T: TriangleTest> NearestTriangle<'a, U, T> {
     #[inline(always)]
     fn test_block<S: Simd>(&mut self, block: &Block) {
         let hits = self.test.intersect::<S>(block, self.nearest.t);
+        if hits.mask == 0 {
+            return;
+        }
+        let (t, u, v) = (hits.t.to_array(), hits.u.to_array(), hits.v.to_array());
         for i in lanes(hits.mask) {
-            self.offer(Candidate { t: hits.t[i], u: hits.u[i], v: hits.v[i], id: block.ids[i] });
+            let i = i % LANES;
+            self.offer(Candidate { t: t[i], u: u[i], v: v[i], id: block.ids[i] });
         }
     }
 
@@ -256,69 +206,7 @@ impl<'a, U: UserShapes, T: TriangleTest> NearestTriangle<'a, U, T> {
     /// The hit, or none at the ray's end.
     #[inline(always)]
     fn best(&self) -> Hit {
-        if self.nearest.t < self.ray.t_max {
-            self.nearest.hit(self.world)
-        } else {
-            Hit { t: self.ray.t_max, ..Hit::NONE }
-        }
-    }
-}
-
-/// The search for the nearest triangles of the rays of a packet.
-struct NearestTriangles<'a, U, T: TriangleTest> {
-    world: &'a World,
-    user: &'a U,
-    rays: &'a [Ray; PACKET],
-    tests: [T; PACKET],
-    together: Option<T::Rays>,
-    nearest: [Candidate; PACKET],
-}
-
-impl<'a, U: UserShapes, T: TriangleTest> NearestTriangles<'a, U, T> {
-    /// The search of one of the rays.
-    #[inline(always)]
-    fn search(&self, i: usize) -> NearestTriangle<'a, U, T> {
-        let (world, user, ray, test, nearest) =
-            (self.world, self.user, &self.rays[i], self.tests[i], self.nearest[i]);
-        NearestTriangle { world, user, ray, test, nearest }
-    }
-}
-
-impl<U: UserShapes, T: TriangleTest> VisitPacket for NearestTriangles<'_, U, T> {
-    #[inline(always)]
-    fn expect<S: Simd>(&self, first: usize) {
-        S::prefetch(&self.world.blocks[first]);
-    }
-
-    #[inline(always)]
-    fn visit<S: Simd>(&mut self, first: usize, count: usize, active: u32, ends: &mut [f32; PACKET]) {
-        for block in &self.world.blocks[first..first + count] {
-            let triangles = block.ids.iter().take_while(|id| **id != u32::MAX).count();
-            match &self.together {
-                // One triangle against all rays, or one ray against all triangles: whatever are fewer.
-                Some(rays) if active.count_ones() as usize > triangles => {
-                    for (lane, &id) in block.ids[..triangles].iter().enumerate() {
-                        let hits = T::intersect_rays::<S>(rays, block, lane, ends);
-                        for i in lanes(hits.mask & active) {
-                            let i = i % PACKET;
-                            let mut search = self.search(i);
-                            search.offer(Candidate { t: hits.t[i], u: hits.u[i], v: hits.v[i], id });
-                            self.nearest[i] = search.nearest;
-                            ends[i] = search.nearest.t;
-                        }
-                    }
-                }
-                _ => {
-                    for i in lanes(active) {
-                        let i = i % PACKET;
-                        let mut search = self.search(i);
-                        search.test_block::<S>(block);
-                        self.nearest[i] = search.nearest;
-                        ends[i] = search.nearest.t;
-                    }
-                }
-            }
-        }
+        if self.nearest.t < self.ray.t_max { self.nearest.hit(self.world) } else { Hit::NONE }
     }
 }
 
@@ -350,8 +238,13 @@ impl<U: UserShapes, T: TriangleTest> VisitLeaf for AnyTriangle<'_, U, T> {
     fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf {
         for block in &self.world.blocks[first..first + count] {
             let hits = self.test.intersect::<S>(block, self.ray.t_max);
+            if hits.mask == 0 {
+                continue;
+            }
+            let (t, u, v) = (hits.t.to_array(), hits.u.to_array(), hits.v.to_array());
             for i in lanes(hits.mask) {
-                let found = Candidate { t: hits.t[i], u: hits.u[i], v: hits.v[i], id: block.ids[i] };
+                let i = i % LANES;
+                let found = Candidate { t: t[i], u: u[i], v: v[i], id: block.ids[i] };
                 let is_accepted =
                     || !U::HAS_FILTER || self.user.accept(self.world.tag, &found.hit(self.world), self.ray);
                 if found.t < self.ray.t_max && is_accepted() {

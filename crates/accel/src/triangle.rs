@@ -10,7 +10,7 @@ use aureole_math::Ray;
 use bytemuck::{Pod, Zeroable};
 
 use crate::Accuracy;
-use crate::bvh::{PACKET, SideBySide};
+use crate::bvh::{PACKET, Packet};
 use crate::simd::{Floats, Simd, splat3};
 
 /// Triangles in a block.
@@ -51,21 +51,25 @@ impl Block {
 
 /// A bit for each of some tests that found a hit, and where.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Hits<const N: usize> {
+pub(crate) struct Hits<F> {
     pub mask: u32,
-    pub t: [f32; N],
-    pub u: [f32; N],
-    pub v: [f32; N],
+    pub t: F,
+    pub u: F,
+    pub v: F,
 }
 
-impl<const N: usize> Hits<N> {
-    pub(crate) const NONE: Self = Self { mask: 0, t: [0.0; N], u: [0.0; N], v: [0.0; N] };
+impl<F: Copy> Hits<F> {
+    /// No hit.
+    #[inline(always)]
+    fn none(zero: F) -> Self {
+        Self { mask: 0, t: zero, u: zero, v: zero }
+    }
 }
 
 /// A way to intersect rays with triangles: a ray made ready for it. One ray against the triangles of a block and one triangle
 /// against the rays of a packet are the same arithmetic, so they find the same hits.
 pub(crate) trait TriangleTest: Copy {
-    /// The rays of a packet.
+    /// What the rays of a packet are tested with, beside the packet.
     type Rays;
 
     /// What a block keeps of a triangle.
@@ -74,18 +78,25 @@ pub(crate) trait TriangleTest: Copy {
     fn new(ray: &Ray) -> Self;
 
     /// The rays of a packet, if they can be tested together.
-    fn together(rays: &[Self; PACKET], side_by_side: &SideBySide) -> Option<Self::Rays>;
+    fn together<S: Simd>(packet: &Packet<S>) -> Option<Self::Rays>;
+
+    /// One of the rays by itself.
+    fn one_of(rays: &Self::Rays, i: usize, ray: &Ray) -> Self;
+
+    /// The boxes of the triangles of a block, `[axis][side]`.
+    fn boxes<S: Simd>(block: &Block) -> [[[f32; LANES]; 2]; 3];
 
     /// The hits of the ray with the triangles of a block in `(t_min, t_max]`.
-    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<LANES>;
+    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<S::F8>;
 
     /// The hits of rays, up to their ends, with one triangle of a block.
     fn intersect_rays<S: Simd>(
         rays: &Self::Rays,
+        packet: &Packet<S>,
         block: &Block,
         lane: usize,
-        ends: &[f32; PACKET],
-    ) -> Hits<PACKET>;
+        ends: S::F16,
+    ) -> Hits<S::F16>;
 }
 
 /// What a block keeps of all its triangles, the axes in this order.

@@ -232,15 +232,23 @@ fn packets_find_what_single_rays_find() {
             for eye in [Point3::new(0.4, 0.3, 3.0), Point3::new(-2.0, 0.5, 0.5), Point3::new(0.5, 0.5, 0.5)] {
                 let config = Config { accuracy, ..Config::default() };
                 let world = World::build(vec![soup(n, size, 4)], 0, &config).expect("the geometry is sound");
-                let rays = camera(16 * 256, eye);
+                let mut rays = camera(16 * 256, eye);
+                // Odd ones among them disturb no others: with no numbers, with an end, along an axis.
+                rays[7].direction.x = f32::NAN;
+                rays[39].t_max = f32::NAN;
+                (300..330).for_each(|i| rays[i] = rays[i].until(if i % 2 == 0 { 1.0 } else { 0.8 }));
+                rays[400..432].iter_mut().for_each(|ray| ray.direction = Vector3::new(-0.0, 0.0, -1.0));
                 let mut hits = vec![Hit::NONE; rays.len()];
                 world.closest_hits(&rays, &mut hits, &NoUserShapes);
-                for (ray, hit) in rays.iter().zip(&hits) {
+                let mut blocked = vec![false; rays.len()];
+                world.occluded_many(&rays, &mut blocked, &NoUserShapes);
+                for ((ray, hit), blocked) in rays.iter().zip(&hits).zip(blocked) {
                     assert_eq!(
                         hit.is_some().then_some(*hit),
                         world.closest_hit(ray, &NoUserShapes),
                         "{ray:?}"
                     );
+                    assert_eq!(hit.is_some(), blocked, "{ray:?}");
                 }
                 assert!(hits.iter().any(Hit::is_some) || n == 1);
             }

@@ -14,6 +14,6 @@ mod tree;
 pub(crate) use build::{build, build_binary};
 pub use node::Stats;
 pub(crate) use node::{Bvh8, MAX_LEVELS};
-pub(crate) use packet::{PACKET, Packet, SideBySide, VisitPacket};
+pub(crate) use packet::{PACKET, Packet, VisitPacket};
 pub(crate) use traverse::{Leaf, TIE_SCALE, VisitLeaf};
 pub(crate) use tree::{Below, BinaryNode, BinaryTree};

@@ -5,7 +5,7 @@
 //! Ray Packets".
 
 use aureole_math::Ray;
-use glam::{Vec3, Vec4};
+use glam::Vec4;
 
 use super::node::{Bvh8, COUNT_BITS, LEAF, Node, WIDTH};
 use super::traverse::{ABSOLUTE, RELATIVE, Stack, TIE_SCALE};
@@ -15,116 +15,110 @@ use crate::simd::{Floats, Mask, Simd, lanes, splat3};
 pub(crate) const PACKET: usize = 16;
 
 /// Tests leaves against the rays of a packet.
-pub(crate) trait VisitPacket {
-    /// Tests the packed things from `first` on against the rays whose bits are set in `active`. Lowers the ends of rays that
-    /// hit something, to below zero where nothing nearer is wanted.
-    fn visit<S: Simd>(&mut self, first: usize, count: usize, active: u32, ends: &mut [f32; PACKET]);
+pub(crate) trait VisitPacket<S: Simd> {
+    /// Beyond these nothing matters to the rays; below zero where nothing more is wanted at all.
+    fn ends(&self) -> S::F16;
+
+    /// Tests the packed things from `first` on against the rays whose bits are set in `active`; beyond `t_max` nothing
+    /// matters to any of them.
+    fn visit(&mut self, packet: &Packet<S>, first: usize, count: usize, active: u32, t_max: f32);
 
     /// The leaf whose things begin at `first` may be visited soon.
-    fn expect<S: Simd>(&self, first: usize);
+    fn expect(&self, first: usize);
 }
 
-/// What all rays of a packet have in common, and what each box is tested with: see `TraversalRay`.
+/// Rays of about one direction, side by side, and what they have in common.
 pub(crate) struct Packet<S: Simd> {
+    pub origin: [S::F16; 3],
+    pub direction: [S::F16; 3],
+    pub t_min: S::F16,
+    pub t_max: S::F16,
     /// Which side of each axis's slabs is entered first.
-    near: [usize; 3],
+    pub near: [usize; 3],
     /// Those of the rays' origins from which the near and the far planes are soonest and latest met.
     near_origin: [S::F8; 3],
     far_origin: [S::F8; 3],
     /// The least and largest reciprocals of the directions.
     low_inv: [S::F8; 3],
     high_inv: [S::F8; 3],
-    t_min: S::F8,
+    first_t_min: S::F8,
 }
 
-/// The rays of a packet side by side.
-pub(crate) struct SideBySide {
-    pub origin: [[f32; PACKET]; 3],
-    pub direction: [[f32; PACKET]; 3],
-    pub t_min: [f32; PACKET],
-    /// For each axis the factors and offsets of the near and the far planes, as in `TraversalRay`.
-    planes: [[[f32; PACKET]; 4]; 3],
-}
+/// For each axis the factors and offsets of the near and the far planes, as in `TraversalRay`, of each ray.
+struct Slabs<S: Simd>([[S::F16; 4]; 3]);
 
 /// How much directions may differ, relative to their length.
 const SPREAD: f32 = 0.2;
+/// The least size of a component of a direction, as in `TraversalRay`.
+const LEAST: f32 = 1e-18;
 
 impl<S: Simd> Packet<S> {
-    /// `None` when the rays do not belong together.
+    /// `None` when the rays do not belong together, or a number is none.
     #[inline(always)]
     pub(crate) fn new(rays: &[Ray; PACKET]) -> Option<Self> {
-        let vector = |v: [f32; 3]| Vec3::from(v).extend(1.0);
-        let first = vector(rays[0].direction.to_array());
-        let signs = first.is_negative_bitmask();
-        let (mut low, mut high) = (first, first);
-        let (mut low_o, mut high_o) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
+        let starts = [starts::<S>(rays, 0), starts::<S>(rays, 1), starts::<S>(rays, 2), starts::<S>(rays, 3)];
+        let ways = [ways::<S>(rays, 0), ways::<S>(rays, 1), ways::<S>(rays, 2), ways::<S>(rays, 3)];
+        let [low_o, high_o] = extremes::<S>(starts);
+        let [low_d, high_d] = extremes::<S>(ways);
+        let (mut near, mut spread, mut reach) = ([0; 3], 0.0_f32, 0.0_f32);
         let mut same_signs = true;
-        for ray in rays {
-            let (o, d) = (vector(ray.origin.to_array()), vector(ray.direction.to_array()));
-            same_signs &= d.is_negative_bitmask() == signs;
-            (low, high) = (low.min(d), high.max(d));
-            (low_o, high_o) = (low_o.min(o), high_o.max(o));
+        for axis in 0..3 {
+            let (low, high) = (low_d[axis], high_d[axis]);
+            same_signs &= (low >= 0.0) | (high <= 0.0);
+            near[axis] = usize::from(low < 0.0);
+            spread = spread.max(high - low);
+            reach = reach.max(high).max(-low);
         }
-        let size = (high - low).max_element();
-        if !(same_signs && size <= SPREAD * low.truncate().abs().max(high.truncate().abs()).max_element()) {
+        if !(same_signs && spread <= SPREAD * reach) {
             return None;
         }
-        let near = [signs as usize & 1, (signs as usize >> 1) & 1, (signs as usize >> 2) & 1];
-        let (low_o, high_o) = (low_o.to_array(), high_o.to_array());
-        let pick = |axis: usize, far: usize| if near[axis] ^ far == 0 { high_o[axis] } else { low_o[axis] };
-        let mut t_min = f32::INFINITY;
-        for ray in rays {
-            t_min = t_min.min(ray.t_min);
+        let [ox, oy, oz, t_min] = S::transpose(starts);
+        let [dx, dy, dz, t_max] = S::transpose(ways);
+        let numbers = ordered(ox) & ordered(oy) & ordered(oz) & ordered(t_min);
+        if (numbers & ordered(dx) & ordered(dy) & ordered(dz) & ordered(t_max)).bits() != 0xffff {
+            return None;
         }
+        let signs = Vec4::new(side(near[0]), side(near[1]), side(near[2]), 1.0);
+        let reciprocal = |d: [f32; 4]| signs / Vec4::from_array(d).abs().max(Vec4::splat(LEAST));
+        let pick = |axis: usize, far: usize| if near[axis] ^ far == 0 { high_o[axis] } else { low_o[axis] };
         Some(Self {
+            origin: [ox, oy, oz],
+            direction: [dx, dy, dz],
+            t_min,
+            t_max,
             near,
             near_origin: splat3([pick(0, 0), pick(1, 0), pick(2, 0)]),
             far_origin: splat3([pick(0, 1), pick(1, 1), pick(2, 1)]),
-            low_inv: splat3(reciprocal(high).truncate().to_array()),
-            high_inv: splat3(reciprocal(low).truncate().to_array()),
-            t_min: S::F8::splat(t_min),
+            low_inv: splat3(reciprocal(high_d).truncate().to_array()),
+            high_inv: splat3(reciprocal(low_d).truncate().to_array()),
+            first_t_min: S::F8::splat(low_o[3]),
         })
     }
 
-    /// The rays by themselves.
+    /// What each ray tests boxes with.
     #[inline(always)]
-    pub(crate) fn side_by_side(&self, rays: &[Ray; PACKET]) -> SideBySide {
-        let mut out = SideBySide {
-            origin: [[0.0; PACKET]; 3],
-            direction: [[0.0; PACKET]; 3],
-            t_min: [0.0; PACKET],
-            planes: [[[0.0; PACKET]; 4]; 3],
-        };
-        for (i, ray) in rays.iter().enumerate() {
-            let (o, d) = (ray.origin, ray.direction);
-            (out.origin[0][i], out.origin[1][i], out.origin[2][i]) = (o.x, o.y, o.z);
-            (out.direction[0][i], out.direction[1][i], out.direction[2][i]) = (d.x, d.y, d.z);
-            out.t_min[i] = ray.t_min;
-        }
+    fn slabs(&self) -> Slabs<S> {
+        let mut slabs = Slabs([[S::F16::splat(0.0); 4]; 3]);
         for axis in 0..3 {
             // All directions have one sign on this axis.
-            let sign = S::F16::splat(if self.near[axis] == 0 { 1.0 } else { -1.0 });
-            let inv = sign / S::F16::load(&out.direction[axis]).abs().max(S::F16::splat(1e-18));
-            let offset = S::F16::load(&out.origin[axis]) * inv;
+            let least = self.direction[axis].abs().max(S::F16::splat(LEAST));
+            let inv = S::F16::splat(side(self.near[axis])) / least;
+            let offset = self.origin[axis] * inv;
             let slack = offset.abs() * S::F16::splat(ABSOLUTE);
             let relative = S::F16::splat(RELATIVE);
-            out.planes[axis] = [
-                inv.to_array(),
-                (offset + slack).to_array(),
-                (inv * relative).to_array(),
-                ((offset - slack) * relative).to_array(),
-            ];
+            slabs.0[axis] = [inv, offset + slack, inv * relative, (offset - slack) * relative];
         }
-        out
+        slabs
     }
 
     /// Where the first ray may enter each of eight boxes, and a bit for each that some ray may meet before `t_max`.
+    /// `planes[axis][side]`: side 0 the lower, 1 the upper planes.
     #[inline(always)]
-    fn intersect_node(&self, node: &Node, t_max: f32) -> (S::F8, u32) {
-        let (mut enter, mut leave) = (self.t_min, S::F8::splat(f32::INFINITY));
+    pub(crate) fn intersect(&self, planes: &[[[f32; WIDTH]; 2]; 3], t_max: f32) -> (S::F8, u32) {
+        let (mut enter, mut leave) = (self.first_t_min, S::F8::splat(f32::INFINITY));
         for axis in 0..3 {
-            let near = S::F8::load(&node.planes[axis][self.near[axis]]) - self.near_origin[axis];
-            let far = S::F8::load(&node.planes[axis][self.near[axis] ^ 1]) - self.far_origin[axis];
+            let near = S::F8::load(&planes[axis][self.near[axis]]) - self.near_origin[axis];
+            let far = S::F8::load(&planes[axis][self.near[axis] ^ 1]) - self.far_origin[axis];
             let soonest = (near * self.low_inv[axis]).min(near * self.high_inv[axis]);
             let latest = (far * self.low_inv[axis]).max(far * self.high_inv[axis]);
             (enter, leave) = (soonest.max(enter), latest.min(leave));
@@ -135,58 +129,107 @@ impl<S: Simd> Packet<S> {
 
     /// A bit for each ray that meets one box before its end.
     #[inline(always)]
-    fn intersect_box(&self, rays: &SideBySide, node: &Node, slot: usize, ends: &[f32; PACKET]) -> u32 {
-        let mut enter = S::F16::load(&rays.t_min);
-        let mut leave = S::F16::load(ends) * S::F16::splat(TIE_SCALE);
+    fn intersect_box(&self, slabs: &Slabs<S>, node: &Node, slot: usize, ends: S::F16) -> u32 {
+        let mut enter = self.t_min;
+        let mut leave = ends * S::F16::splat(TIE_SCALE);
         for axis in 0..3 {
-            let [near_inv, near_offset, far_inv, far_offset] = &rays.planes[axis];
+            let [near_inv, near_offset, far_inv, far_offset] = slabs.0[axis];
             let near = S::F16::splat(node.planes[axis][self.near[axis]][slot]);
             let far = S::F16::splat(node.planes[axis][self.near[axis] ^ 1][slot]);
-            enter = near.mul_sub(S::F16::load(near_inv), S::F16::load(near_offset)).max(enter);
-            leave = far.mul_sub(S::F16::load(far_inv), S::F16::load(far_offset)).min(leave);
+            enter = near.mul_sub(near_inv, near_offset).max(enter);
+            leave = far.mul_sub(far_inv, far_offset).min(leave);
         }
         enter.less_or_equal(leave).bits()
     }
 }
 
-/// The reciprocal of a direction, as in `TraversalRay`.
+/// The sign of a direction, by the side of a slab that is entered first.
 #[inline(always)]
-fn reciprocal(d: Vec4) -> Vec4 {
-    d.abs().max(Vec4::splat(1e-18)).copysign(d).recip()
+fn side(near: usize) -> f32 {
+    if near == 0 { 1.0 } else { -1.0 }
 }
+
+/// Every fourth ray's origin and beginning.
+#[inline(always)]
+fn starts<S: Simd>(rays: &[Ray; PACKET], first: usize) -> S::F16 {
+    S::join([
+        start::<S>(&rays[first]),
+        start::<S>(&rays[first + 4]),
+        start::<S>(&rays[first + 8]),
+        start::<S>(&rays[first + 12]),
+    ])
+}
+
+#[inline(always)]
+fn start<S: Simd>(ray: &Ray) -> S::F4 {
+    let o = ray.origin;
+    S::F4::load(&[o.x, o.y, o.z, ray.t_min])
+}
+
+/// Every fourth ray's direction and end.
+#[inline(always)]
+fn ways<S: Simd>(rays: &[Ray; PACKET], first: usize) -> S::F16 {
+    S::join([
+        way::<S>(&rays[first]),
+        way::<S>(&rays[first + 4]),
+        way::<S>(&rays[first + 8]),
+        way::<S>(&rays[first + 12]),
+    ])
+}
+
+#[inline(always)]
+fn way<S: Simd>(ray: &Ray) -> S::F4 {
+    let d = ray.direction;
+    S::F4::load(&[d.x, d.y, d.z, ray.t_max])
+}
+
+/// The least and the largest of the quads in four rows.
+#[inline(always)]
+fn extremes<S: Simd>([a, b, c, d]: [S::F16; 4]) -> [[f32; 4]; 2] {
+    let [e, f, g, h] = S::quads(a.min(b).min(c.min(d)));
+    let [i, j, k, l] = S::quads(a.max(b).max(c.max(d)));
+    [e.min(f).min(g.min(h)).to_array(), i.max(j).max(k.max(l)).to_array()]
+}
+
+/// Where there is no NaN.
+#[inline(always)]
+fn ordered<F: Floats<PACKET>>(x: F) -> F::Mask {
+    x.less_or_equal(x)
+}
+
+/// Nodes from which a walk waits for memory: those of a megabyte.
+const MANY: usize = 4096;
 
 impl Bvh8 {
     /// Whether some ray of a packet may meet anything at all.
     #[inline(always)]
     pub(crate) fn is_met_by<S: Simd>(&self, packet: &Packet<S>) -> bool {
-        self.nodes.first().is_some_and(|root| packet.intersect_node(root, f32::INFINITY).1 != 0)
+        self.nodes.first().is_some_and(|root| packet.intersect(&root.planes, f32::INFINITY).1 != 0)
     }
 
     /// Visits the leaves that rays of a packet may meet, nearest first.
     #[inline(always)]
-    pub(crate) fn walk_packet<S: Simd>(
-        &self,
-        packet: &Packet<S>,
-        rays: &SideBySide,
-        ends: &mut [f32; PACKET],
-        visitor: &mut impl VisitPacket,
-    ) {
+    pub(crate) fn walk_packet<S: Simd>(&self, packet: &Packet<S>, visitor: &mut impl VisitPacket<S>) {
         if self.nodes.is_empty() {
             return;
         }
-        let mut t_max = latest(ends);
+        let slabs = packet.slabs();
+        let waits = self.nodes.len() > MANY;
+        let mut t_max = latest::<S>(visitor.ends());
         let mut stack = Stack::new();
         let mut current = 0;
         loop {
             let node = &self.nodes[current as usize];
-            let (enter, mask) = packet.intersect_node(node, t_max);
+            let (enter, mask) = packet.intersect(&node.planes, t_max);
             push_children(current, enter.to_array(), mask, &mut stack);
-            for slot in lanes(mask) {
-                let child = node.children[slot % WIDTH];
-                if child & LEAF == 0 {
-                    S::prefetch(&self.nodes[child as usize]);
-                } else {
-                    visitor.expect::<S>(((child & !LEAF) >> COUNT_BITS) as usize);
+            if waits {
+                for slot in lanes(mask) {
+                    let child = node.children[slot % WIDTH];
+                    if child & LEAF == 0 {
+                        S::prefetch(&self.nodes[child as usize]);
+                    } else {
+                        visitor.expect(((child & !LEAF) >> COUNT_BITS) as usize);
+                    }
                 }
             }
             current = loop {
@@ -196,7 +239,7 @@ impl Bvh8 {
                     continue;
                 }
                 let (parent, slot) = (&self.nodes[entry as u32 as usize / WIDTH], entry as usize % WIDTH);
-                let active = packet.intersect_box(rays, parent, slot, ends);
+                let active = packet.intersect_box(&slabs, parent, slot, visitor.ends());
                 if active == 0 {
                     continue;
                 }
@@ -204,9 +247,9 @@ impl Bvh8 {
                 if child & LEAF == 0 {
                     break child;
                 }
-                let first = (child & !LEAF) >> COUNT_BITS;
-                visitor.visit::<S>(first as usize, (child & ((1 << COUNT_BITS) - 1)) as usize, active, ends);
-                t_max = latest(ends);
+                let first = ((child & !LEAF) >> COUNT_BITS) as usize;
+                visitor.visit(packet, first, (child & ((1 << COUNT_BITS) - 1)) as usize, active, t_max);
+                t_max = latest::<S>(visitor.ends());
             };
         }
     }
@@ -214,8 +257,10 @@ impl Bvh8 {
 
 /// Beyond the last end, nothing matters to any ray.
 #[inline(always)]
-fn latest(ends: &[f32; PACKET]) -> f32 {
-    ends.iter().fold(f32::NEG_INFINITY, |latest, &end| if end > latest { end } else { latest }) * TIE_SCALE
+fn latest<S: Simd>(ends: S::F16) -> f32 {
+    let [a, b, c, d] = S::quads(ends);
+    let [a, b, c, d] = a.max(b).max(c.max(d)).to_array();
+    a.max(b).max(c.max(d)) * TIE_SCALE
 }
 
 /// Puts the children that are met onto the stack, nearest last: by where they are entered, parent and slot.

@@ -20,6 +20,15 @@ pub(crate) trait Simd: Copy {
     /// Sixteen numbers.
     type F16: Floats<16>;
 
+    /// Four quads side by side.
+    fn join(quads: [Self::F4; 4]) -> Self::F16;
+    /// The quads of sixteen numbers.
+    fn quads(joined: Self::F16) -> [Self::F4; 4];
+    /// Transposes the square that the same quads of four rows are: number `i` of row `j` becomes number `j` of row `i`.
+    fn transpose(rows: [Self::F16; 4]) -> [Self::F16; 4];
+    /// `yes` where a bit is set, `no` elsewhere.
+    fn select(bits: u32, yes: Self::F16, no: Self::F16) -> Self::F16;
+
     /// Asks for memory that will be read soon.
     #[inline(always)]
     fn prefetch<T>(_soon: &T) {}
@@ -56,20 +65,6 @@ pub(crate) trait Mask: Copy + BitAnd<Output = Self> {
 #[inline(always)]
 pub(crate) fn splat3<const N: usize, F: Floats<N>>(x: [f32; 3]) -> [F; 3] {
     [F::splat(x[0]), F::splat(x[1]), F::splat(x[2])]
-}
-
-/// Three numbers of each of many things, side by side.
-#[inline(always)]
-pub(crate) fn transposed<T, const N: usize>(
-    things: &[T; N],
-    numbers: impl Fn(&T) -> [f32; 3],
-) -> [[f32; N]; 3] {
-    let mut out = [[0.0; N]; 3];
-    for (i, thing) in things.iter().enumerate() {
-        let [x, y, z] = numbers(thing);
-        (out[0][i], out[1][i], out[2][i]) = (x, y, z);
-    }
-    out
 }
 
 /// Three registers from memory.

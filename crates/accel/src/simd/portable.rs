@@ -12,6 +12,26 @@ impl Simd for Portable {
     type F4 = Lanes<4>;
     type F8 = Lanes<8>;
     type F16 = Lanes<16>;
+
+    #[inline(always)]
+    fn join(quads: [Lanes<4>; 4]) -> Lanes<16> {
+        Lanes(std::array::from_fn(|i| quads[i / 4].0[i % 4]))
+    }
+
+    #[inline(always)]
+    fn quads(joined: Lanes<16>) -> [Lanes<4>; 4] {
+        std::array::from_fn(|quad| Lanes(std::array::from_fn(|i| joined.0[4 * quad + i])))
+    }
+
+    #[inline(always)]
+    fn transpose(rows: [Lanes<16>; 4]) -> [Lanes<16>; 4] {
+        std::array::from_fn(|row| Lanes(std::array::from_fn(|i| rows[i % 4].0[i / 4 * 4 + row])))
+    }
+
+    #[inline(always)]
+    fn select(bits: u32, yes: Lanes<16>, no: Lanes<16>) -> Lanes<16> {
+        Lanes(std::array::from_fn(|i| if bits >> i & 1 == 1 { yes.0[i] } else { no.0[i] }))
+    }
 }
 
 #[derive(Clone, Copy, Debug)]

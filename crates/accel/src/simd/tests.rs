@@ -29,6 +29,12 @@ impl Kernel for &Everything {
         operations::<4, S::F4>(first(a), first(b), &mut out);
         operations::<8, S::F8>(first(a), first(b), &mut out);
         operations::<16, S::F16>(*a, *b, &mut out);
+        let (x, y) = (S::F16::load(a), S::F16::load(b));
+        let quads = S::quads(x);
+        let shuffled = [S::join([quads[2], quads[0], quads[3], quads[1]]), S::select(0xb2c5, x, y)];
+        for row in S::transpose([x, y, y, x]).into_iter().chain(shuffled) {
+            out.extend(row.to_array().map(f32::to_bits));
+        }
         out
     }
 }
@@ -57,4 +63,16 @@ fn wide_and_portable_agree_bit_by_bit() {
 fn lanes_are_the_set_bits() {
     assert_eq!(super::lanes(0b1011).collect::<Vec<_>>(), [0, 1, 3]);
     assert_eq!(super::lanes(0).count(), 0);
+}
+
+#[test]
+fn quads_are_transposed() {
+    let row = |j: usize| std::array::from_fn(|i| (16 * j + i) as f32);
+    let rows: [[f32; 16]; 4] = std::array::from_fn(row);
+    let out = Portable::transpose(rows.map(|row| Floats::load(&row)));
+    for (i, row) in out.into_iter().enumerate() {
+        for (j, x) in row.to_array().into_iter().enumerate() {
+            assert_eq!(x, rows[j % 4][j / 4 * 4 + i]);
+        }
+    }
 }

@@ -84,6 +84,37 @@ impl Simd for Avx2 {
     type F16 = Pair;
 
     #[inline(always)]
+    fn join([a, b, c, d]: [F4; 4]) -> Pair {
+        // SAFETY: see `register`.
+        unsafe { Pair(F8(_mm256_set_m128(b.0, a.0)), F8(_mm256_set_m128(d.0, c.0))) }
+    }
+
+    #[inline(always)]
+    fn quads(Pair(low, high): Pair) -> [F4; 4] {
+        // SAFETY: see `register`.
+        unsafe {
+            [
+                F4(_mm256_castps256_ps128(low.0)),
+                F4(_mm256_extractf128_ps::<1>(low.0)),
+                F4(_mm256_castps256_ps128(high.0)),
+                F4(_mm256_extractf128_ps::<1>(high.0)),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    fn transpose([a, b, c, d]: [Pair; 4]) -> [Pair; 4] {
+        let [low_0, low_1, low_2, low_3] = transpose8([a.0, b.0, c.0, d.0]);
+        let [high_0, high_1, high_2, high_3] = transpose8([a.1, b.1, c.1, d.1]);
+        [Pair(low_0, high_0), Pair(low_1, high_1), Pair(low_2, high_2), Pair(low_3, high_3)]
+    }
+
+    #[inline(always)]
+    fn select(bits: u32, yes: Pair, no: Pair) -> Pair {
+        Pair(select8(bits, yes.0, no.0), select8(bits >> 8, yes.1, no.1))
+    }
+
+    #[inline(always)]
     fn prefetch<T>(soon: &T) {
         prefetch(soon);
     }
@@ -95,8 +126,77 @@ impl Simd for Avx512 {
     type F16 = F16;
 
     #[inline(always)]
+    fn join([a, b, c, d]: [F4; 4]) -> F16 {
+        // SAFETY: see `register`.
+        unsafe {
+            let low = _mm512_castps256_ps512(_mm256_set_m128(b.0, a.0));
+            F16(_mm512_insertf32x8::<1>(low, _mm256_set_m128(d.0, c.0)))
+        }
+    }
+
+    #[inline(always)]
+    fn quads(F16(joined): F16) -> [F4; 4] {
+        // SAFETY: see `register`.
+        unsafe {
+            [
+                F4(_mm512_castps512_ps128(joined)),
+                F4(_mm512_extractf32x4_ps::<1>(joined)),
+                F4(_mm512_extractf32x4_ps::<2>(joined)),
+                F4(_mm512_extractf32x4_ps::<3>(joined)),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    fn transpose([a, b, c, d]: [F16; 4]) -> [F16; 4] {
+        // SAFETY: see `register`.
+        unsafe {
+            let (ab, cd) = (_mm512_unpacklo_ps(a.0, b.0), _mm512_unpacklo_ps(c.0, d.0));
+            let (ab_high, cd_high) = (_mm512_unpackhi_ps(a.0, b.0), _mm512_unpackhi_ps(c.0, d.0));
+            [
+                F16(_mm512_shuffle_ps::<0x44>(ab, cd)),
+                F16(_mm512_shuffle_ps::<0xee>(ab, cd)),
+                F16(_mm512_shuffle_ps::<0x44>(ab_high, cd_high)),
+                F16(_mm512_shuffle_ps::<0xee>(ab_high, cd_high)),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    fn select(bits: u32, yes: F16, no: F16) -> F16 {
+        // SAFETY: see `register`.
+        F16(unsafe { _mm512_mask_blend_ps(bits as u16, no.0, yes.0) })
+    }
+
+    #[inline(always)]
     fn prefetch<T>(soon: &T) {
         prefetch(soon);
+    }
+}
+
+#[inline(always)]
+fn transpose8([a, b, c, d]: [F8; 4]) -> [F8; 4] {
+    // SAFETY: see `register`.
+    unsafe {
+        let (ab, cd) = (_mm256_unpacklo_ps(a.0, b.0), _mm256_unpacklo_ps(c.0, d.0));
+        let (ab_high, cd_high) = (_mm256_unpackhi_ps(a.0, b.0), _mm256_unpackhi_ps(c.0, d.0));
+        [
+            F8(_mm256_shuffle_ps::<0x44>(ab, cd)),
+            F8(_mm256_shuffle_ps::<0xee>(ab, cd)),
+            F8(_mm256_shuffle_ps::<0x44>(ab_high, cd_high)),
+            F8(_mm256_shuffle_ps::<0xee>(ab_high, cd_high)),
+        ]
+    }
+}
+
+#[inline(always)]
+fn select8(bits: u32, yes: F8, no: F8) -> F8 {
+    // SAFETY: see `register`.
+    unsafe {
+        let bit_of_lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        let set = _mm256_and_si256(_mm256_set1_epi32(bits as i32), bit_of_lane);
+        let mask = _mm256_castsi256_ps(_mm256_cmpeq_epi32(set, bit_of_lane));
+        F8(_mm256_blendv_ps(no.0, yes.0, mask))
     }
 }
 

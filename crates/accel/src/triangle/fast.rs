@@ -3,11 +3,11 @@
 //! # References
 //! [Möller and Trumbore 1997] "Fast, Minimum Storage Ray/Triangle Intersection".
 
-use aureole_math::Ray;
+use aureole_math::{Ray, gamma};
 
 use super::{Block, Hits, LANES, TriangleTest, corners, one_triangle};
-use crate::bvh::{PACKET, SideBySide};
-use crate::simd::{Floats, Mask, Simd, load3, splat3};
+use crate::bvh::Packet;
+use crate::simd::{Floats, Mask, Simd, splat3};
 
 /// A ray as it is.
 #[derive(Clone, Copy, Debug)]
@@ -17,15 +17,8 @@ pub(crate) struct Fast {
     t_min: f32,
 }
 
-/// Origins, directions and beginnings of rays.
-pub(crate) struct FastRays {
-    origin: [[f32; PACKET]; 3],
-    direction: [[f32; PACKET]; 3],
-    t_min: [f32; PACKET],
-}
-
 impl TriangleTest for Fast {
-    type Rays = FastRays;
+    type Rays = ();
 
     /// The first vertex and the edges from it to the others.
     fn prepare([a, b, c]: [[f32; 3]; 3]) -> [[f32; 3]; 3] {
@@ -39,12 +32,30 @@ impl TriangleTest for Fast {
     }
 
     #[inline(always)]
-    fn together(_: &[Self; PACKET], rays: &SideBySide) -> Option<FastRays> {
-        Some(FastRays { origin: rays.origin, direction: rays.direction, t_min: rays.t_min })
+    fn together<S: Simd>(_: &Packet<S>) -> Option<()> {
+        Some(())
     }
 
     #[inline(always)]
-    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<LANES> {
+    fn one_of((): &(), _: usize, ray: &Ray) -> Self {
+        Self::new(ray)
+    }
+
+    #[inline(always)]
+    fn boxes<S: Simd>(block: &Block) -> [[[f32; LANES]; 2]; 3] {
+        let [a, e1, e2]: [[S::F8; 3]; 3] = corners(block, [0, 1, 2]);
+        let mut boxes = [[[0.0; LANES]; 2]; 3];
+        for axis in 0..3 {
+            let (a, b, c) = (a[axis], a[axis] + e1[axis], a[axis] + e2[axis]);
+            // Both the edges and these corners are rounded.
+            let slack = (a.abs() + e1[axis].abs() + e2[axis].abs()) * S::F8::splat(gamma(4));
+            boxes[axis] = [(a.min(b).min(c) - slack).to_array(), (a.max(b).max(c) + slack).to_array()];
+        }
+        boxes
+    }
+
+    #[inline(always)]
+    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<S::F8> {
         let t_min = S::F8::splat(self.t_min);
         intersect(
             corners(block, [0, 1, 2]),
@@ -57,14 +68,14 @@ impl TriangleTest for Fast {
 
     #[inline(always)]
     fn intersect_rays<S: Simd>(
-        rays: &FastRays,
+        (): &(),
+        packet: &Packet<S>,
         block: &Block,
         lane: usize,
-        ends: &[f32; PACKET],
-    ) -> Hits<PACKET> {
-        let (origin, direction) = (load3(&rays.origin), load3(&rays.direction));
-        let t_min = S::F16::load(&rays.t_min);
-        intersect(one_triangle(block, lane, [0, 1, 2]), origin, direction, t_min, S::F16::load(ends))
+        ends: S::F16,
+    ) -> Hits<S::F16> {
+        let triangle = one_triangle(block, lane, [0, 1, 2]);
+        intersect(triangle, packet.origin, packet.direction, packet.t_min, ends)
     }
 }
 
@@ -75,7 +86,7 @@ fn intersect<const N: usize, F: Floats<N>>(
     d: [F; 3],
     t_min: F,
     t_max: F,
-) -> Hits<N> {
+) -> Hits<F> {
     let from_a = [o[0] - a[0], o[1] - a[1], o[2] - a[2]];
     let (p, q) = (cross(d, e2), cross(from_a, e1));
     // A vanishing determinant makes all of them infinite or NaN, which are in no range.
@@ -84,10 +95,7 @@ fn intersect<const N: usize, F: Floats<N>>(
     let inside = F::splat(0.0).less_or_equal(u.min(v)) & (u + v).less_or_equal(F::splat(1.0));
     let in_range = t_min.less(t) & t.less_or_equal(t_max);
     let mask = (inside & in_range).bits();
-    if mask == 0 {
-        return Hits::NONE;
-    }
-    Hits { mask, t: t.to_array(), u: u.to_array(), v: v.to_array() }
+    Hits { mask, t, u, v }
 }
 
 #[inline(always)]

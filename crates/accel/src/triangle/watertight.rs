@@ -7,8 +7,8 @@ use aureole_math::{Ray, gamma};
 use glam::Vec4;
 
 use super::{Block, Hits, LANES, TriangleTest, corners, one_triangle};
-use crate::bvh::{PACKET, SideBySide};
-use crate::simd::{Floats, Mask, Simd, load3, splat3, transposed};
+use crate::bvh::{PACKET, Packet};
+use crate::simd::{Floats, Mask, Simd, load3, splat3};
 
 /// What becomes x, y and z, by the largest axis and whether the ray runs down it: the winding of triangles is kept.
 const AXES: [[[usize; 3]; 2]; 3] = [[[1, 2, 0], [2, 1, 0]], [[2, 0, 1], [0, 2, 1]], [[0, 1, 2], [1, 0, 2]]];
@@ -23,11 +23,10 @@ pub(crate) struct Watertight {
 }
 
 /// Rays with the same axes.
+#[repr(C, align(64))]
 pub(crate) struct WatertightRays {
-    axes: [usize; 3],
     shear: [[f32; PACKET]; 3],
-    origin: [[f32; PACKET]; 3],
-    t_min: [f32; PACKET],
+    axes: [usize; 3],
 }
 
 impl TriangleTest for Watertight {
@@ -56,18 +55,46 @@ impl TriangleTest for Watertight {
     }
 
     #[inline(always)]
-    fn together(rays: &[Self; PACKET], side_by_side: &SideBySide) -> Option<WatertightRays> {
-        let axes = rays[0].axes;
-        rays.iter().all(|ray| ray.axes == axes).then(|| WatertightRays {
-            axes,
-            shear: transposed(rays, |ray| ray.shear),
-            origin: transposed(rays, |ray| ray.origin),
-            t_min: side_by_side.t_min,
-        })
+    fn together<S: Simd>(packet: &Packet<S>) -> Option<WatertightRays> {
+        let d = packet.direction;
+        let (x, y, z) = (d[0].abs(), d[1].abs(), d[2].abs());
+        let largest = match (x.max(y).less(z).bits(), x.less(y).bits()) {
+            (0xffff, _) => 2,
+            (0, 0xffff) => 1,
+            (0, 0) => 0,
+            _ => return None,
+        };
+        let axes = AXES[largest][packet.near[largest]];
+        let [dx, dy, dz] = [d[axes[0]], d[axes[1]], d[axes[2]]];
+        let shear = [(dx / dz).to_array(), (dy / dz).to_array(), (S::F16::splat(1.0) / dz).to_array()];
+        Some(WatertightRays { axes, shear })
     }
 
     #[inline(always)]
-    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<LANES> {
+    fn one_of(rays: &WatertightRays, i: usize, ray: &Ray) -> Self {
+        let origin = ray.origin.to_array();
+        let [x, y, z] = rays.axes;
+        Self {
+            axes: rays.axes,
+            shear: [rays.shear[0][i], rays.shear[1][i], rays.shear[2][i]],
+            origin: [origin[x], origin[y], origin[z]],
+            t_min: ray.t_min,
+        }
+    }
+
+    #[inline(always)]
+    fn boxes<S: Simd>(block: &Block) -> [[[f32; LANES]; 2]; 3] {
+        let [a, b, c]: [[S::F8; 3]; 3] = corners(block, [0, 1, 2]);
+        let mut boxes = [[[0.0; LANES]; 2]; 3];
+        for axis in 0..3 {
+            let (a, b, c) = (a[axis], b[axis], c[axis]);
+            boxes[axis] = [a.min(b).min(c).to_array(), a.max(b).max(c).to_array()];
+        }
+        boxes
+    }
+
+    #[inline(always)]
+    fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<S::F8> {
         let corners = corners(block, self.axes);
         let t_min = S::F8::splat(self.t_min);
         intersect(corners, splat3(self.origin), splat3(self.shear), t_min, S::F8::splat(t_max))
@@ -76,13 +103,14 @@ impl TriangleTest for Watertight {
     #[inline(always)]
     fn intersect_rays<S: Simd>(
         rays: &WatertightRays,
+        packet: &Packet<S>,
         block: &Block,
         lane: usize,
-        ends: &[f32; PACKET],
-    ) -> Hits<PACKET> {
-        let corners = one_triangle(block, lane, rays.axes);
-        let t_min = S::F16::load(&rays.t_min);
-        intersect(corners, load3(&rays.origin), load3(&rays.shear), t_min, S::F16::load(ends))
+        ends: S::F16,
+    ) -> Hits<S::F16> {
+        let [x, y, z] = rays.axes;
+        let origin = [packet.origin[x], packet.origin[y], packet.origin[z]];
+        intersect(one_triangle(block, lane, rays.axes), origin, load3(&rays.shear), packet.t_min, ends)
     }
 }
 
@@ -93,14 +121,14 @@ fn intersect<const N: usize, F: Floats<N>>(
     shear: [F; 3],
     t_min: F,
     t_max: F,
-) -> Hits<N> {
+) -> Hits<F> {
     let ([x0, y0, z0], [x1, y1, z1], [x2, y2, z2]) =
         (relative(a, origin, shear), relative(b, origin, shear), relative(c, origin, shear));
     // Twice the signed areas between the ray and each edge; outside where their signs differ.
     let (u, v, w) = (x2 * y1 - y2 * x1, x0 * y2 - y0 * x2, x1 * y0 - y1 * x0);
     let mut inside = same_signs(u, v, w);
     if inside == 0 {
-        return Hits::NONE;
+        return Hits::none(shear[0]);
     }
     let mut edges = [u, v, w];
     if u.abs().min(v.abs()).min(w.abs()).less_or_equal(F::splat(0.0)).bits() & inside != 0 {
@@ -119,11 +147,11 @@ fn intersect<const N: usize, F: Floats<N>>(
     // A vanishing determinant makes t infinite or NaN, which is in no range.
     inside &= (t_min.less(t) & t.less_or_equal(t_max)).bits();
     if inside == 0 {
-        return Hits::NONE;
+        return Hits::none(shear[0]);
     }
     let bound = error_bound(edges, [x0, x1, x2], [y0, y1, y2], z, inv);
     inside &= bound.less(t).bits();
-    Hits { mask: inside, t: t.to_array(), u: (v * inv).to_array(), v: (w * inv).to_array() }
+    Hits { mask: inside, t, u: v * inv, v: w * inv }
 }
 
 /// A corner relative to the ray's origin, sheared (z not yet scaled).

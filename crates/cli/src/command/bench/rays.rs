@@ -81,7 +81,7 @@ pub(crate) enum Test {
 pub(crate) enum Mode {
     /// One by one
     Single,
-    /// Thousands at once
+    /// Hundreds at once
     Stream,
 }
 
@@ -155,6 +155,9 @@ fn name(accel: Accel, test: Test, mode: Mode) -> String {
     name
 }
 
+/// Rays in a stream: with their hits, they stay in the nearest cache.
+const BATCH: usize = 512;
+
 /// Asks a world about rays.
 struct Tracer<'a> {
     world: &'a World,
@@ -183,16 +186,26 @@ impl Tracer<'_> {
                 }
             }
             (Mode::Stream, false) => {
-                let rays: Vec<Ray> = records.iter().map(ray).collect();
-                let mut hits = vec![Hit::NONE; rays.len()];
-                self.world.closest_hits(&rays, &mut hits, &NoUserShapes);
-                hits.iter().for_each(|hit| result(hit.t));
+                let mut rays = Vec::with_capacity(BATCH);
+                let mut hits = [Hit::NONE; BATCH];
+                for records in records.chunks(BATCH) {
+                    rays.clear();
+                    rays.extend(records.iter().map(ray));
+                    let hits = &mut hits[..records.len()];
+                    self.world.closest_hits(&rays, hits, &NoUserShapes);
+                    hits.iter().for_each(|hit| result(hit.t));
+                }
             }
             (Mode::Stream, true) => {
-                let rays: Vec<Ray> = records.iter().map(ray).collect();
-                let mut blocked = vec![false; rays.len()];
-                self.world.occluded_many(&rays, &mut blocked, &NoUserShapes);
-                blocked.into_iter().for_each(|blocked| result(hit_or_miss(blocked)));
+                let mut rays = Vec::with_capacity(BATCH);
+                let mut blocked = [false; BATCH];
+                for records in records.chunks(BATCH) {
+                    rays.clear();
+                    rays.extend(records.iter().map(ray));
+                    let blocked = &mut blocked[..records.len()];
+                    self.world.occluded_many(&rays, blocked, &NoUserShapes);
+                    blocked.iter().for_each(|&blocked| result(hit_or_miss(blocked)));
+                }
             }
         }
     }
