@@ -4,7 +4,7 @@ use aureole_math::{Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
 use super::{
-    ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, GlossLobe, HairLobe, LayeredLobe,
+    BaekPlasticLobe, ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, GlossLobe, HairLobe, LayeredLobe,
     MeasuredLobe, MerlLobe, NullLobe, PlasticLobe, PrincipledLobe, PrincipledThinLobe, RoughConductorLobe,
     RoughDielectricLobe, RoughDiffuseLobe, RoughPlasticLobe, SheenLobe, ThinDielectricLobe,
 };
@@ -179,6 +179,7 @@ lobes! {
     RoughDielectric(RoughDielectricLobe),
     Plastic(PlasticLobe),
     RoughPlastic(RoughPlasticLobe),
+    BaekPlastic(BaekPlasticLobe),
     DiffuseTransmission(DiffuseTransmissionLobe),
     Principled(PrincipledLobe),
     PrincipledThin(PrincipledThinLobe),

@@ -39,7 +39,7 @@ impl Element for Mask {
 impl MaterialOps for Mask {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
         let opacity = at.texture.float(self.opacity).clamp(0.0, 1.0);
-        out.push(NullLobe, weight * (1.0 - opacity), at.frame, at.frame.n);
+        out.push(NullLobe::CLEAR, weight * (1.0 - opacity), at.frame, at.frame.n);
         if opacity > 0.0 {
             at.nested(self.material, weight * opacity, out);
         }

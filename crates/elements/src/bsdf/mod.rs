@@ -3,6 +3,7 @@
 //! A *material* is a recipe: it names textures and other materials. At a hit it evaluates to a [`Bsdf`], a plain value
 //! on the stack made of a few weighted [`Lobe`]s, which know no textures.
 
+mod baek_plastic;
 mod bend;
 mod blend;
 mod bump;
@@ -48,6 +49,7 @@ use aureole_math::{Arena, Frame, Id, Vector3};
 
 use crate::{Resolver, TextureContext};
 
+pub use baek_plastic::{BaekPlastic, BaekPlasticLobe};
 pub use blend::Blend;
 pub use bump::Bump;
 pub use coated_conductor::CoatedConductor;
@@ -124,6 +126,7 @@ registry! {
     rough_dielectric::RoughDielectric as RoughDielectric = "rough_dielectric",
     plastic::Plastic as Plastic = "plastic",
     rough_plastic::RoughPlastic as RoughPlastic = "rough_plastic",
+    baek_plastic::BaekPlastic as BaekPlastic = "baek_plastic",
     diffuse_transmission::DiffuseTransmission as DiffuseTransmission = "diffuse_transmission",
     coated_diffuse::CoatedDiffuse as CoatedDiffuse = "coated_diffuse",
     coated_conductor::CoatedConductor as CoatedConductor = "coated_conductor",

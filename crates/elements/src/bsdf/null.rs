@@ -1,34 +1,60 @@
-//! `null`: a surface that is not there; light passes straight on.
+//! `null`: a surface that is not there, or a filter: light passes straight on.
+//!
+//! | parameter | type | default | meaning |
+//! |---|---|---|---|
+//! | `transmittance` | texture | 1 | factor on the light that passes |
+//! | `scale` | float | 1 | another factor, in [0, 1] |
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::{Point2, Vector3};
-use aureole_spectrum::Spectrum;
+use aureole_math::{Id, Point2, Vector3};
+use aureole_spectrum::{Spectrum, SpectrumRole};
 
 use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode};
-use crate::{Element, Resolver};
+use crate::{Element, Resolver, Texture, spectrum_texture};
 
-/// No surface.
+/// No surface, or a filter.
 #[derive(Clone, Copy, Debug)]
-pub struct Null;
+pub struct Null {
+    transmittance: Id<Texture>,
+    scale: f32,
+}
 
 impl Element for Null {
-    const SUMMARY: &'static str = "A surface that is not there; light passes straight on.";
-    const PARAMS: &'static [ParamDoc] = &[];
+    const SUMMARY: &'static str = "A surface that is not there, or a filter: light passes straight on.";
+    const PARAMS: &'static [ParamDoc] = &[
+        ParamDoc {
+            name: "transmittance",
+            ty: "texture",
+            default: "1",
+            doc: "factor on the light that passes",
+        },
+        ParamDoc { name: "scale", ty: "float", default: "1", doc: "another factor, in [0, 1]" },
+    ];
 
-    fn from_params(_: &mut Params, _: &mut dyn Resolver) -> Result<Self, SceneError> {
-        Ok(Self)
+    fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
+        let transmittance = spectrum_texture(params, resolver, "transmittance", 1.0, SpectrumRole::Albedo)?;
+        Ok(Self { transmittance, scale: params.float_in("scale", 1.0, 0.0, 1.0)? })
     }
 }
 
 impl MaterialOps for Null {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
-        out.push(NullLobe, weight, at.frame, at.frame.n);
+        let lobe = NullLobe { transmittance: at.texture.spectrum(self.transmittance) * self.scale };
+        out.push(lobe, weight, at.frame, at.frame.n);
     }
 }
 
 /// Straight transmission.
 #[derive(Clone, Copy, Debug)]
-pub struct NullLobe;
+pub struct NullLobe {
+    /// Factor on the light that passes.
+    pub transmittance: Spectrum,
+}
+
+impl NullLobe {
+    /// Nothing at all.
+    pub const CLEAR: Self = Self { transmittance: Spectrum::ONE };
+}
 
 impl LobeOps for NullLobe {
     fn eval(&self, _: Vector3, _: Vector3, _: TransportMode) -> Spectrum {
@@ -38,7 +64,7 @@ impl LobeOps for NullLobe {
     fn sample(&self, wo: Vector3, _: f32, _: Point2, _: TransportMode) -> Option<LobeSample> {
         (wo.z != 0.0).then(|| LobeSample {
             wi: -wo,
-            value: Spectrum::splat(1.0 / wo.z.abs()),
+            value: self.transmittance / wo.z.abs(),
             pdf_omega: 1.0,
             flags: LobeFlags::DELTA_TRANSMISSION,
             eta: 1.0,
@@ -59,6 +85,6 @@ impl LobeOps for NullLobe {
     }
 
     fn albedo(&self, _: Vector3) -> Spectrum {
-        Spectrum::ONE
+        self.transmittance
     }
 }

@@ -32,10 +32,11 @@ const KINDS: &[(&str, &str)] = &[
     ("openpbr", "open_pbr"),
     ("measured", "measured"),
     ("measured_polarized", "measured_polarized"),
-    ("pplastic", "plastic"),
-    ("polarizer", "polarizer"),
-    ("retarder", "retarder"),
-    ("circular", "circular_polarizer"),
+    ("pplastic", "baek_plastic"),
+    // What optical filters are to light whose polarisation is not carried.
+    ("polarizer", "null"),
+    ("retarder", "null"),
+    ("circular", "null"),
 ];
 
 pub(super) fn translate<'a>(
@@ -61,10 +62,8 @@ pub(super) fn translate<'a>(
             "diffuse_reflectance_sampling_rate",
             "diffuse_transmittance_sampling_rate",
         ]),
-        "pplastic" => {
-            let message = "`pplastic` is rendered as `plastic`: polarisation is not carried";
-            t.context.report.warn(message, scope.span());
-        }
+        "pplastic" => scope.default("distribution", word("beckmann")),
+        "polarizer" | "retarder" | "circular" => filter(&mut scope),
         "measured" => {
             let (path, at) = t.path(&mut scope, "filename")?;
             let (found, params) = brdf::read(&path, &t.context.options.limits, at)?;
@@ -105,6 +104,17 @@ fn metal(scope: &mut Scope<'_>) {
         scope.default("k", uniform(1.0));
     } else {
         scope.default("material", word("none"));
+    }
+}
+
+/// Polarisers take half of unpolarised light, at any angle; retarders change nothing but its phase.
+fn filter(scope: &mut Scope<'_>) {
+    if scope.object.plugin != "retarder" {
+        scope.out.push("scale", Value::Float(0.5), scope.span());
+    }
+    for name in ["theta", "delta", "polarizing", "left_handed"] {
+        scope.take(name);
+        scope.take_named(name);
     }
 }
 

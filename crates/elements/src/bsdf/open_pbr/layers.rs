@@ -37,7 +37,7 @@ struct Light {
 /// Adds all lobes.
 pub(super) fn evaluate(m: &OpenPbr, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
     let opacity = at.texture.float(m.opacity).clamp(0.0, 1.0);
-    out.push(NullLobe, weight * (1.0 - opacity), at.frame, at.frame.n);
+    out.push(NullLobe::CLEAR, weight * (1.0 - opacity), at.frame, at.frame.n);
     let mut light = Light { weight: weight * opacity, tint: Spectrum::ONE };
     let cos = at.wo.dot(at.frame.n);
     if cos <= 0.0 {

@@ -75,6 +75,11 @@ pub(super) fn examples(world: &mut World) -> Vec<Example> {
             )
         }),
         ("rough plastic", true, lacquer.clone()),
+        (
+            "Baek's plastic",
+            true,
+            world.add(bsdf, "baek_plastic", [("distribution", word("ggx")), ("alpha", Float(0.3))]),
+        ),
         ("diffuse transmission", true, {
             world.add(
                 bsdf,
@@ -251,6 +256,7 @@ pub(super) fn examples(world: &mut World) -> Vec<Example> {
             world.add(bsdf, "hair", [("reflectance", rgb(0.9, 0.7, 0.4)), ("beta_m", Float(0.15))])
         }),
         ("null", true, world.add(bsdf, "null", [])),
+        ("filter", true, world.add(bsdf, "null", [("transmittance", rgb(0.7, 0.4, 0.2))])),
         ("bump", false, world.add(bsdf, "bump", [("texture", slope), ("bsdf", diffuse.clone())])),
         ("bump from a picture", false, {
             world.add(bsdf, "bump", [("texture", picture), ("scale", Float(0.8)), ("bsdf", diffuse)])
