@@ -31,7 +31,7 @@ fn check_film(film: FilmFile) {
     let again = FilmFile::decode(&bytes, Path::new("film.exr"), &ImageLimits::default());
     assert_eq!(again.as_ref().ok(), Some(&film), "it comes back as it was written");
     let mut image = film.film.image();
-    assert_eq!(image.data().len(), 3 * image.width() * image.height());
+    assert_eq!(image.data().len(), image.channels().len() * image.width() * image.height());
     image.data_mut().fill(0.0);
 
     let mut merger = Merger::default();
@@ -68,7 +68,7 @@ fn table(bytes: &[u8]) -> Option<Planes> {
 /// A film of a few pixels as a file, and as the bytes that [`table`] understands.
 pub(crate) fn samples() -> Vec<Sample> {
     let (width, height) = (3u8, 2u8);
-    let facts = "layout=1\nfilm=4 4 1 1\nsamples=0 4\nspp=4\nfingerprint=seed\t0|shape\tabc";
+    let facts = "layout=2\nfilm=4 4 1 1\ncrop=1 1 3 2\nborder=0 0\nimage=0 1065353216\nlayers=\nsamples=0 4\nspp=4\nfingerprint=seed\t0|shape\tabc";
     let mut bytes = [&[width, height][..], facts.as_bytes(), b"\n\n"].concat();
     let pixels = usize::from(width) * usize::from(height);
     let mut rng = Pcg32::new(1);

@@ -1,21 +1,23 @@
 //! Films as files: checkpoints, and parts of a render that are merged.
 //!
 //! A film file is an EXR image that any program shows, with what it takes to go on: `sum.*` are the exact sums of a pixel's
-//! weighted samples in words of 32 bits, the lowest first; `count.*` how many samples there are. The header's attributes say
-//! which samples of which scene they are, and a checksum over everything tells whether the file is whole.
+//! weighted samples in words of 32 bits, the lowest first; `count.*` how many samples there are; `layer.*` the sums of other
+//! quantities. A cropped film has the pixels around the crop whose samples reach into it. The header's attributes say which
+//! samples of which scene they are, and a checksum over everything tells whether the file is whole.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
-use aureole_image::{Attribute, Image, ImageError, ImageLimits, Metadata, Plane, Planes};
+use aureole_image::{Attribute, ImageError, ImageLimits, Metadata, Plane, Planes};
 use aureole_scene::{Crop, Film as FilmShape};
 
-use crate::film::{ExactSum, Film, PixelSum};
+use crate::exact_sum::ExactSum;
+use crate::film::{Film, PixelSum};
 use crate::fingerprint::{Fingerprint, Hash};
 
 /// The layout of the file; films of another one are refused.
-const LAYOUT: &str = "1";
+const LAYOUT: &str = "2";
 /// The exact sums of a pixel.
 const SUMS: [&str; 4] = ["R", "G", "B", "weight"];
 
@@ -61,10 +63,11 @@ impl FilmFile {
     /// # Errors
     /// [`ImageError::Encode`].
     pub fn encode(&self) -> Result<Vec<u8>, ImageError> {
-        let FilmShape { full, crop } = self.film.shape();
+        let shape @ FilmShape { full, crop, border, is_grey, gain } = self.film.shape();
+        let area = shape.area();
         let mut planes = Planes {
-            width: crop.width as usize,
-            height: crop.height as usize,
+            width: area.width as usize,
+            height: area.height as usize,
             channels: channels(&self.film),
             metadata: Metadata::new(),
         };
@@ -72,7 +75,11 @@ impl FilmFile {
             planes.metadata.insert(format!("aureole.{name}"), value.into());
         };
         fact("layout", LAYOUT.to_owned());
-        fact("film", format!("{} {} {} {}", full.width, full.height, crop.x, crop.y));
+        fact("film", format!("{} {} {} {}", full.width, full.height, area.x, area.y));
+        fact("crop", format!("{} {} {} {}", crop.x, crop.y, crop.width, crop.height));
+        fact("border", format!("{} {}", border[0], border[1]));
+        fact("image", format!("{} {}", u8::from(is_grey), gain.to_bits()));
+        fact("layers", self.film.layer_names().join("\n"));
         fact("samples", format!("{} {}", self.samples.start, self.samples.end));
         fact("spp", self.spp.to_string());
         fact("fingerprint", self.fingerprint.to_text());
@@ -113,14 +120,41 @@ impl FilmFile {
         if !(fits(x, width, full_width) && fits(y, height, full_height) && start < end && end <= spp) {
             return Err(FilmError::NotAFilm("its sizes contradict each other".into()));
         }
-        let mut shape = FilmShape::new(full_width, full_height);
-        shape.crop = Crop { x, y, width, height };
-        let film = film(shape, start, &planes.channels)?;
+        let area = Crop { x, y, width, height };
+        let shape = shape(&planes.metadata, full_width, full_height)?;
+        if shape.area() != area {
+            return Err(FilmError::NotAFilm("its sizes contradict each other".into()));
+        }
+        let names = text(&planes.metadata, "layers")?.lines().map(str::to_owned).collect();
+        let film = film(check_names(names)?, shape, start, &planes.channels)?;
         if film.pixels.iter().any(|pixel| pixel.dropped > pixel.drawn || pixel.drawn > end - start) {
             return Err(FilmError::NotAFilm("its counts contradict each other".into()));
         }
         let fingerprint = Fingerprint::from_text(text(&planes.metadata, "fingerprint")?);
         Ok(Self { film, fingerprint, samples: start..end, spp })
+    }
+}
+
+/// The whole image and the part of it, without trust.
+fn shape(metadata: &Metadata, full_width: u32, full_height: u32) -> Result<FilmShape, FilmError> {
+    let mut shape = FilmShape::new(full_width, full_height);
+    let [x, y, width, height] = numbers(metadata, "crop")?;
+    let [border_x, border_y] = numbers(metadata, "border")?;
+    let [is_grey, gain] = numbers(metadata, "image")?;
+    shape.crop = Crop { x, y, width, height };
+    shape.border = [border_x, border_y];
+    shape.is_grey = is_grey == 1;
+    shape.gain = f32::from_bits(gain);
+    let inside = |start: u32, size: u32, whole: u32| {
+        size > 0 && start.checked_add(size).is_some_and(|end| end <= whole)
+    };
+    let fits = inside(x, width, full_width) && inside(y, height, full_height) && is_grey < 2;
+    let fits = fits && (0.0..=1e6).contains(&shape.gain);
+    // What the filters' reach may be at most.
+    if fits && border_x.max(border_y) < 256 {
+        Ok(shape)
+    } else {
+        Err(FilmError::NotAFilm("its crop makes no sense".into()))
     }
 }
 
@@ -132,10 +166,11 @@ fn check_layout(planes: &Planes) -> Result<(), FilmError> {
 }
 
 fn channels(film: &Film) -> BTreeMap<String, Plane> {
-    let image: Image = film.image();
+    let means: Vec<[f32; 3]> = film.pixels.iter().map(PixelSum::mean).collect();
     let colors = ["R", "G", "B"].iter().enumerate();
-    let mut planes: BTreeMap<String, Plane> =
-        colors.map(|(i, name)| (name.to_string(), Plane::Float(image.plane(i).collect()))).collect();
+    let mut planes: BTreeMap<String, Plane> = colors
+        .map(|(i, name)| (name.to_string(), Plane::Float(means.iter().map(|rgb| rgb[i]).collect())))
+        .collect();
     let mut plane = |name: String, word: &dyn Fn(&PixelSum) -> u32| {
         planes.insert(name, Plane::Uint(film.pixels.iter().map(word).collect()));
     };
@@ -146,11 +181,41 @@ fn channels(film: &Film) -> BTreeMap<String, Plane> {
     }
     plane("count.drawn".into(), &|pixel| pixel.drawn);
     plane("count.dropped".into(), &|pixel| pixel.dropped);
+    let count = film.layer_names().len();
+    for i in 0..count {
+        for word in 0..4 {
+            let sums = film.layers.iter().skip(i).step_by(count);
+            planes.insert(layer(i, word), Plane::Uint(sums.map(|sum| sum.words()[word]).collect()));
+        }
+    }
     planes
 }
 
-fn film(shape: FilmShape, first: u32, channels: &BTreeMap<String, Plane>) -> Result<Film, FilmError> {
-    let size = shape.crop.width as usize * shape.crop.height as usize;
+/// Layers are channels of an image: their names differ from each other and from the picture's.
+fn check_names(names: Vec<String>) -> Result<Vec<String>, FilmError> {
+    const MOST: usize = 256;
+    let mut sorted: Vec<&str> =
+        names.iter().map(String::as_str).chain(["R", "G", "B", "Y"]).collect();
+    sorted.sort_unstable();
+    if names.len() > MOST || sorted.windows(2).any(|pair| pair[0] == pair[1]) {
+        return Err(FilmError::NotAFilm("its layers make no sense".into()));
+    }
+    Ok(names)
+}
+
+/// The channel of a word of a layer's sums.
+fn layer(index: usize, word: usize) -> String {
+    format!("layer.{index}.{word}")
+}
+
+fn film(
+    names: Vec<String>,
+    shape: FilmShape,
+    first: u32,
+    channels: &BTreeMap<String, Plane>,
+) -> Result<Film, FilmError> {
+    let area = shape.area();
+    let size = area.width as usize * area.height as usize;
     let plane = |name: &str| match channels.get(name) {
         Some(Plane::Uint(words)) if words.len() == size => Ok(words.as_slice()),
         _ => Err(FilmError::NotAFilm(format!("the channel `{name}` is missing"))),
@@ -162,7 +227,22 @@ fn film(shape: FilmShape, first: u32, channels: &BTreeMap<String, Plane>) -> Res
         }
     }
     let (drawn, dropped) = (plane("count.drawn")?, plane("count.dropped")?);
-    let mut film = Film::new(shape, first);
+    let count = names.len();
+    let layers: Vec<[&[u32]; 4]> = (0..count)
+        .map(|i| {
+            let mut words = [[].as_slice(); 4];
+            for (word, slot) in words.iter_mut().enumerate() {
+                *slot = plane(&layer(i, word))?;
+            }
+            Ok(words)
+        })
+        .collect::<Result<_, FilmError>>()?;
+    let mut film = Film::with_layers(shape, first, names);
+    for (i, words) in layers.iter().enumerate() {
+        for (at, sum) in film.layers.iter_mut().skip(i).step_by(count).enumerate() {
+            *sum = ExactSum::from_words(words.map(|plane| plane[at]));
+        }
+    }
     for (at, pixel) in film.pixels.iter_mut().enumerate() {
         let [r, g, b, weight] = words.map(|sum| ExactSum::from_words(sum.map(|plane| plane[at])));
         *pixel = PixelSum { rgb: [r, g, b], weight, drawn: drawn[at], dropped: dropped[at] };
@@ -206,17 +286,19 @@ fn numbers<const N: usize>(metadata: &Metadata, name: &str) -> Result<[u32; N], 
 
 #[cfg(test)]
 mod tests {
+    use aureole_image::Image;
     use aureole_spectrum::Spectrum;
 
     use super::*;
+    use crate::film::tests::add;
 
     fn file() -> FilmFile {
         let mut shape = FilmShape::new(40, 30);
         shape.crop = Crop { x: 5, y: 6, width: 7, height: 3 };
         let mut film = Film::new(shape, 2);
         let mut tile = film.tile(Crop { x: 6, y: 6, width: 2, height: 2 });
-        tile.add(1, 1, Spectrum::from_rgb([-0.1, 2.0, 1e9]), 0.5);
-        tile.add(0, 1, Spectrum::splat(f32::NAN), 0.5);
+        add(&mut tile, 1, 1, Spectrum::from_rgb([-0.1, 2.0, 1e9]), 0.5);
+        add(&mut tile, 0, 1, Spectrum::splat(f32::NAN), 0.5);
         film.put(&tile);
         let fingerprint = Fingerprint::from_text("seed\t0\nshape\tabc\n");
         FilmFile { film, fingerprint, samples: 2..5, spp: 8 }

@@ -26,7 +26,7 @@ impl Fingerprint {
     /// The fingerprint of a description as it is compiled with one of its cameras.
     pub fn new(desc: &SceneDesc, film: &Film, camera: usize, options: &RenderOptions) -> Self {
         let mut print = Self::default();
-        let Film { full, crop } = film;
+        let Film { full, crop, .. } = film;
         print.set("version", env!("CARGO_PKG_VERSION"));
         print.set("seed", options.seed);
         let corner = format!("{} x {} at {},{}", crop.width, crop.height, crop.x, crop.y);

@@ -16,6 +16,7 @@
 
 #![forbid(unsafe_code)]
 
+mod exact_sum;
 mod film;
 mod film_file;
 mod fingerprint;
@@ -24,8 +25,10 @@ mod memory;
 mod merge;
 mod render;
 pub mod replay;
+mod splat;
 
-pub use film::{ExactSum, Film};
+pub use exact_sum::ExactSum;
+pub use film::Film;
 pub use film_file::{FilmError, FilmFile};
 pub use fingerprint::Fingerprint;
 pub use integrator::{Integrator, IntegratorManual, integrators};

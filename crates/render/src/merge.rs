@@ -90,6 +90,9 @@ impl Merger {
             None => self.whole = Some((part.film, part.fingerprint)),
             Some((film, fingerprint)) => {
                 let mut differences = part.fingerprint.differences(fingerprint);
+                if differences.is_empty() && part.film.layer_names() != film.layer_names() {
+                    differences.push("the layers".to_owned());
+                }
                 if differences.is_empty() && part.film.shape() != film.shape() {
                     differences.push("the size".to_owned());
                 }
@@ -142,11 +145,12 @@ mod tests {
     use aureole_spectrum::Spectrum;
 
     use super::*;
+    use crate::film::tests::add;
 
     fn part(samples: Range<u32>, seed: u32) -> FilmFile {
         let mut film = Film::new(FilmShape::new(1, 1), samples.start);
         let mut tile = film.tile(Crop { x: 0, y: 0, width: 1, height: 1 });
-        samples.clone().for_each(|s| assert!(tile.add(0, 0, Spectrum::splat(0.1 * s as f32), 1.0)));
+        samples.clone().for_each(|s| assert!(add(&mut tile, 0, 0, Spectrum::splat(0.1 * s as f32), 1.0)));
         film.put(&tile);
         FilmFile { film, fingerprint: Fingerprint::from_text(&format!("seed\t{seed}")), samples, spp: 8 }
     }

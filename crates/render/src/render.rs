@@ -9,12 +9,13 @@ use aureole_desc::SceneError;
 use aureole_elements::camera::CameraSample;
 use aureole_elements::sampler::SampleKey;
 use aureole_image::Image;
-use aureole_math::{Point2, Vector2};
+use aureole_math::Point2;
 use aureole_scene::{Crop, Scene};
 use aureole_spectrum::Spectrum;
 
-use crate::film::{Film, FilmTile};
+use crate::film::{Film, FilmTile, SampleValue};
 use crate::integrator::{self, Batch, FIRST_FREE_DIMENSION, Integrator, PathStart};
+use crate::splat::{Footprint, Splatter};
 
 /// Side of a tile in pixels, unless another is wanted.
 const TILE: u32 = 16;
@@ -149,7 +150,12 @@ pub fn resume(
 ) -> Result<Rendered, SceneError> {
     let integrator = integrator::build(scene, options.integrator.as_deref())?;
     let samples = options.samples(scene);
-    if film.shape() != scene.film || film.first != samples.start {
+    let layers = integrator.layers();
+    let film = match film.samples() {
+        0 => Film::with_layers(film.shape(), film.first, layers.to_vec()),
+        _ => film,
+    };
+    if film.shape() != scene.film || film.first != samples.start || film.layer_names() != layers {
         let message = "the film is not one of this image and these samples";
         return Err(SceneError::invalid(message, aureole_desc::Span::NONE));
     }
@@ -159,6 +165,7 @@ pub fn resume(
         observer,
         samples,
         tile: if options.tile == 0 { TILE } else { options.tile },
+        splatter: Splatter::new(scene),
         seed: options.seed,
         start: Instant::now(),
         limit: options.time,
@@ -190,6 +197,7 @@ struct Job<'a> {
     observer: &'a dyn Observer,
     samples: Range<u32>,
     tile: u32,
+    splatter: Splatter,
     seed: u64,
     start: Instant,
     limit: Option<Duration>,
@@ -206,7 +214,8 @@ type Tiles = [Mutex<FilmTile>];
 
 impl Job<'_> {
     fn run(&self, film: Film, threads: usize) -> Rendered {
-        let areas = tiles(&self.scene.film.crop, self.tile);
+        let area = self.scene.film.area();
+        let areas = tiles(&area, self.tile);
         let tiles: Vec<Mutex<FilmTile>> = areas.map(|area| Mutex::new(film.tile(area))).collect();
         let [least, _] = film.drawn();
         drop(film);
@@ -250,7 +259,8 @@ impl Job<'_> {
 
     /// The film as it is now. Tiles come one after the other, each between two passes over it.
     fn film(&self, tiles: &Tiles) -> Film {
-        let mut film = Film::new(self.scene.film, self.samples.start);
+        let layers = self.integrator.layers().to_vec();
+        let mut film = Film::with_layers(self.scene.film, self.samples.start, layers);
         tiles.iter().for_each(|tile| film.put(&lock(tile)));
         film
     }
@@ -287,7 +297,7 @@ impl Job<'_> {
                     // A resumed film may have been stopped, or tiled, anywhere.
                     if tile.drawn(x, y) <= s - self.samples.start {
                         let id = SampleId { x: area.x + x, y: area.y + y, sample: s };
-                        worker.push(id, start_path(self.scene, self.seed, id));
+                        worker.push(id, start_path(self.scene, &self.splatter, self.seed, id));
                     }
                 }
             }
@@ -295,9 +305,11 @@ impl Job<'_> {
         worker.radiance.clear();
         worker.radiance.resize(worker.starts.len(), Spectrum::ZERO);
         let rays = worker.batch.trace(self.integrator, self.scene, &worker.starts, &mut worker.radiance);
-        for (i, radiance) in worker.radiance.iter().enumerate() {
+        let layers = self.integrator.layers().len();
+        for (i, &radiance) in worker.radiance.iter().enumerate() {
             let id = worker.ids[i];
-            if !tile.add(id.x - area.x, id.y - area.y, *radiance, worker.weights[i]) {
+            let value = SampleValue { radiance, layers: &worker.batch.layers()[i * layers..][..layers] };
+            if !tile.add(id.x - area.x, id.y - area.y, value, &worker.footprints[i]) {
                 self.note_non_finite(id);
             }
         }
@@ -313,10 +325,10 @@ impl Job<'_> {
     }
 
     fn report(&self) {
-        let crop = self.scene.film.crop;
+        let area = self.scene.film.area();
         self.observer.progress(&Progress {
             samples_done: self.drawn.load(Ordering::Relaxed) + self.drawn_before,
-            samples_total: u64::from(crop.width) * u64::from(crop.height) * self.samples.len() as u64,
+            samples_total: u64::from(area.width) * u64::from(area.height) * self.samples.len() as u64,
             rays: self.rays.load(Ordering::Relaxed),
             elapsed: self.start.elapsed(),
         });
@@ -340,17 +352,21 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The camera ray of a sample, and its weight from the filter.
+/// The camera ray of a sample, and what it adds to the pixels around its own.
 #[inline]
-pub(crate) fn start_path(scene: &Scene, seed: u64, id: SampleId) -> (PathStart, f32) {
+pub(crate) fn start_path(
+    scene: &Scene,
+    splatter: &Splatter,
+    seed: u64,
+    id: SampleId,
+) -> (PathStart, Footprint) {
     let key = SampleKey::new(seed, id.x, id.y, id.sample);
     let sampler = &scene.sampler;
-    let filter = scene.filter.sample(sampler.get_2d(key, 0));
-    let center = Point2::new(id.x as f32 + 0.5, id.y as f32 + 0.5);
-    let film = center + Vector2::new(filter.offset.x, filter.offset.y);
+    let footprint = splatter.place(&scene.filter, sampler.get_2d(key, 0));
+    let film = Point2::new(id.x as f32 + 0.5, id.y as f32 + 0.5) + footprint.offset;
     let camera_sample = CameraSample { film, lens: sampler.get_2d(key, 1), time: sampler.get_1d(key, 2) };
     const { assert!(FIRST_FREE_DIMENSION == 3) };
-    (PathStart { ray: scene.camera.generate_ray(&camera_sample), key }, filter.weight)
+    (PathStart { ray: scene.camera.generate_ray(&camera_sample), key }, footprint)
 }
 
 /// A thread's memory, kept from batch to batch.
@@ -358,7 +374,7 @@ pub(crate) fn start_path(scene: &Scene, seed: u64, id: SampleId) -> (PathStart, 
 struct Worker {
     ids: Vec<SampleId>,
     starts: Vec<PathStart>,
-    weights: Vec<f32>,
+    footprints: Vec<Footprint>,
     radiance: Vec<Spectrum>,
     batch: Batch,
 }
@@ -367,14 +383,14 @@ impl Worker {
     fn clear(&mut self) {
         self.ids.clear();
         self.starts.clear();
-        self.weights.clear();
+        self.footprints.clear();
     }
 
     #[inline]
-    fn push(&mut self, id: SampleId, (start, weight): (PathStart, f32)) {
+    fn push(&mut self, id: SampleId, (start, footprint): (PathStart, Footprint)) {
         self.ids.push(id);
         self.starts.push(start);
-        self.weights.push(weight);
+        self.footprints.push(footprint);
     }
 }
 

@@ -9,6 +9,7 @@ use aureole_spectrum::Spectrum;
 
 use crate::film::LARGEST;
 use crate::integrator::{self, Batch, PathStart};
+use crate::splat::Splatter;
 use crate::render::{RenderOptions, SampleId, start_path};
 
 /// Something that happens on a path.
@@ -197,7 +198,8 @@ pub fn replay(scene: &Scene, options: &RenderOptions, id: SampleId) -> Result<Re
         return Err(SceneError::invalid(message, aureole_desc::Span::NONE));
     }
     let integrator = integrator::build(scene, options.integrator.as_deref())?;
-    let (start, filter_weight) = start_path(scene, options.seed, id);
+    let (start, footprint) = start_path(scene, &Splatter::new(scene), options.seed, id);
+    let filter_weight = footprint.own();
     let mut events =
         vec![Event::Start { origin: start.ray.origin, direction: start.ray.direction, filter_weight }];
     let mut radiance = [Spectrum::ZERO];

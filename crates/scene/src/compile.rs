@@ -52,10 +52,22 @@ pub fn compile(desc: &SceneDesc, options: &CompileOptions, report: &mut Report) 
     let bounds = world.bounds();
     let camera = compiler.camera(bounds)?;
     let filter = compiler.root(desc.filter, Family::Filter, "box", Filter::build)?;
+    let film = Film { border: border(&filter), ..film };
     let sampler = compiler.root(desc.sampler, Family::Sampler, "sobol", Sampler::build)?;
     let integrator =
         desc.integrator.map_or_else(|| default_node(Family::Integrator, "path"), |id| desc[id].clone());
     Ok(compiler.finish(film, camera, filter, sampler, integrator, world))
+}
+
+/// Samples are shared by the pixels whose filters cover them. Filters of one pixel have nothing to share; those wider than
+/// this, in pixels, would cost more than they save.
+const WIDEST_SHARED: f32 = 4.0;
+
+/// How many pixels beside its own a sample adds to.
+fn border(filter: &Filter) -> [u32; 2] {
+    let radius = filter.radius();
+    let is_shared = radius.x.max(radius.y) > 0.5 && radius.x.max(radius.y) <= WIDEST_SHARED;
+    [radius.x, radius.y].map(|r| if is_shared { (r - 0.5).ceil().max(0.0) as u32 } else { 0 })
 }
 
 struct Compiler<'a> {

@@ -16,19 +16,45 @@ pub struct Crop {
     pub height: u32,
 }
 
-/// Resolution and crop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+impl Crop {
+    /// The rectangle with a border around it, within another one.
+    pub fn grown(&self, [bx, by]: [u32; 2], within: &Self) -> Self {
+        let axis = |start: u32, size: u32, border: u32, from: u32, whole: u32| {
+            let first = start.saturating_sub(border).max(from);
+            let end = start.saturating_add(size).saturating_add(border).min(from.saturating_add(whole));
+            (first, end.saturating_sub(first))
+        };
+        let (x, width) = axis(self.x, self.width, bx, within.x, within.width);
+        let (y, height) = axis(self.y, self.height, by, within.y, within.height);
+        Self { x, y, width, height }
+    }
+}
+
+/// Resolution and crop, and what a pixel is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
     /// The whole image.
     pub full: FilmSpec,
     /// What is rendered of it.
     pub crop: Crop,
+    /// How many pixels beside its own a sample adds to, in each direction; none where samples belong to one pixel.
+    pub border: [u32; 2],
+    /// Whether the image is one of luminance.
+    pub is_grey: bool,
+    /// What the image is multiplied by: how sensitive the film is.
+    pub gain: f32,
 }
 
 impl Film {
     /// An uncropped film.
     pub fn new(width: u32, height: u32) -> Self {
-        Self { full: FilmSpec { width, height }, crop: Crop { x: 0, y: 0, width, height } }
+        let crop = Crop { x: 0, y: 0, width, height };
+        Self { full: FilmSpec { width, height }, crop, border: [0; 2], is_grey: false, gain: 1.0 }
+    }
+
+    /// The pixels that samples are drawn for: the crop, and those around it whose samples reach into it.
+    pub fn area(&self) -> Crop {
+        self.crop.grown(self.border, &Crop { x: 0, y: 0, width: self.full.width, height: self.full.height })
     }
 
     /// The film of a description, without compiling it.
@@ -57,6 +83,8 @@ impl Film {
                 height: params.int_in("crop_height", rest(height, y), 1, rest(height, y))? as u32,
             };
         }
+        film.is_grey = params.one_of("pixel_format", &[("rgb", false), ("luminance", true)])?;
+        film.gain = params.float_in("gain", 1.0, 0.0, 1e6)?;
         film.check(limits, node.span)?;
         Ok(film)
     }

@@ -42,7 +42,6 @@ pub(super) fn film(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<NodeI
     // The file's format follows from its name; borders do not change what is inside.
     scope.ignore(&[
         "file_format",
-        "pixel_format",
         "component_format",
         "sample_border",
         "compensate",
@@ -56,6 +55,10 @@ pub(super) fn film(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<NodeI
         "burn",
         "label",
     ]);
+    // Pictures are grey or in colour; alpha and other primaries are not written.
+    if scope.string("pixel_format")?.is_some_and(|format| format.starts_with("luminance")) {
+        scope.out.push("pixel_format", Value::String("luminance".to_owned()), scope.span());
+    }
     match scope.take_child(&[Tag::Filter]) {
         Some(child) => t.scene.filter = Some(filter(t, child.id)?),
         None => t.scene.filter = Some(default_filter(t, &scope)),

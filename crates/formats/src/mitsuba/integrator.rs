@@ -1,6 +1,6 @@
 //! Light transport algorithms.
 
-use aureole_desc::{Family, Node, Params, SceneError, Value};
+use aureole_desc::{Family, Node, Param, Params, SceneError, Value};
 
 use super::scope::Scope;
 use super::translate::Translator;
@@ -23,14 +23,18 @@ const KINDS: &[(&str, &str)] = &[
     ("stokes", ""),
 ];
 
-/// Quantities of `aov` that Aureole has a view of.
-const VIEWS: [(&str, &str); 6] = [
-    ("depth", "depth"),
-    ("sh_normal", "normals"),
-    ("geo_normal", "normals"),
-    ("uv", "uv"),
-    ("albedo", "albedo"),
-    ("prim_index", "primitive_id"),
+/// Quantities of `aov` that are layers in Aureole by the same name.
+const QUANTITIES: [&str; 10] = [
+    "albedo",
+    "depth",
+    "position",
+    "uv",
+    "geo_normal",
+    "sh_normal",
+    "dp_du",
+    "dp_dv",
+    "prim_index",
+    "shape_index",
 ];
 
 /// Sets the scene's integrator.
@@ -48,9 +52,8 @@ pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), S
                 format!("participating media are not rendered yet: `{plugin}` is rendered as `path`");
             t.context.report.warn(message, scope.span());
         }
-        "ptracer" | "prb" | "prb_basic" | "prb_projective" => {
-            t.context.report.warn(format!("`{plugin}` is rendered as `path`"), scope.span());
-        }
+        // Mitsuba's rays begin at the near plane.
+        "depth" => scope.default("from_near_clip", Value::Bool(true)),
         "direct" => {
             if let Some(count) = scope.int("shading_samples")? {
                 scope.default("emitter_samples", Value::Int(count));
@@ -66,29 +69,65 @@ pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), S
     Ok(())
 }
 
-/// An integrator around another: the other is what is rendered.
+/// An integrator around others: the first one's is the picture, and what else is asked for are layers.
 fn wrapper<'a>(t: &mut Translator<'a, '_, '_>, mut scope: Scope<'a>) -> Result<(), SceneError> {
     let plugin = scope.object.plugin.as_str();
     let inner = scope.take_child(&[Tag::Integrator]);
     if let Some(inner) = inner {
-        if plugin != "moment" {
-            let message =
-                format!("`{plugin}` is left out: only the picture of the integrator inside is rendered");
-            t.context.report.warn(message, scope.span());
-        }
         // A wrapper inside itself by reference would never end.
         if t.tree.get(inner.id).plugin == plugin {
             return Err(SceneError::invalid(format!("`{plugin}` inside of `{plugin}`"), inner.span));
         }
-        return root(t, inner.id);
+        root(t, inner.id)?;
     }
-    let views = scope.string("aovs")?.unwrap_or_default();
-    let found = views.split(',').find_map(|view| {
-        let quantity = view.rsplit(':').next()?.trim();
-        VIEWS.iter().find(|(name, _)| *name == quantity).map(|(_, kind)| *kind)
-    });
-    let kind = found.ok_or_else(|| scope.missing("integrator", "an integrator inside"))?;
-    let node = t.scene.add(Node::new(Family::Integrator, kind, Params::new(), scope.span()));
-    t.scene.integrator = Some(node);
+    for other in std::iter::from_fn(|| scope.take_child(&[Tag::Integrator])) {
+        t.context.report.warn(format!("`{plugin}` shows the first integrator inside alone"), other.span);
+    }
+    // What Mitsuba calls a child without a name.
+    let name = inner.and_then(|inner| inner.name).unwrap_or("_arg_0");
+    let layers = match plugin {
+        "aov" => {
+            let views = aovs(t, &mut scope)?;
+            let picture = inner.map(|_| format!("{name}:radiance"));
+            picture.into_iter().chain(views).collect()
+        }
+        "moment" => vec![format!("{name}:xyz"), format!("m2_{name}:xyz2")],
+        _ => {
+            let message =
+                format!("`{plugin}` is left out: only the picture of the integrator inside is rendered");
+            t.context.report.warn(message, scope.span());
+            Vec::new()
+        }
+    };
+    let integrator = match (inner, t.scene.integrator) {
+        (Some(_), Some(integrator)) => integrator,
+        _ if plugin == "aov" => {
+            let node = t.scene.add(Node::new(Family::Integrator, "aov", Params::new(), scope.span()));
+            t.scene.integrator = Some(node);
+            node
+        }
+        _ => return Err(scope.missing("integrator", "an integrator inside")),
+    };
+    let params = &mut t.scene[integrator].params;
+    let inner_layers = params.try_string("layers")?;
+    let inner_layers = inner_layers.iter().flat_map(|list| list.split(',')).map(|layer| format!("{name}.{layer}"));
+    let all: Vec<String> = layers.into_iter().chain(inner_layers).collect();
+    if !all.is_empty() {
+        params.set(Param { name: "layers".to_owned(), value: Value::String(all.join(",")), span: scope.span() });
+    }
     Ok(())
+}
+
+/// The layers that `aovs` asks for.
+fn aovs(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<Vec<String>, SceneError> {
+    let at = scope.values.span("aovs");
+    let text = scope.string("aovs")?.ok_or_else(|| scope.missing("aovs", "pairs `name:quantity`"))?;
+    let mut layers = Vec::new();
+    for pair in text.split(',').map(str::trim).filter(|pair| !pair.is_empty()) {
+        match pair.rsplit_once(':') {
+            Some((_, quantity)) if QUANTITIES.contains(&quantity.trim()) => layers.push(pair.to_owned()),
+            _ => t.context.report.warn(format!("the layer `{pair}` is left out"), at),
+        }
+    }
+    Ok(layers)
 }

@@ -32,10 +32,9 @@ impl Reader<'_, '_> {
         if let Some(name) = film.text("filename")? {
             params.push("filename", Value::String(name.to_owned()), film.at("filename"));
         }
-        let exposure = film.float("exposuretime", 1.0)? * film.float("iso", 100.0)? / 100.0;
-        if exposure != 1.0 {
-            let at = film.at("iso");
-            self.warn("the film's `iso` and `exposuretime` are not applied: use `--exposure`", at);
+        let gain = self.exposure(&film)? * film.float("iso", 100.0)? / 100.0;
+        if gain != 1.0 {
+            params.push("gain", Value::Float(gain), film.at("iso"));
         }
         if let Some(sensor) = film.text("sensor")?.filter(|sensor| *sensor != "cie1931") {
             self.warn(format!("sensor `{sensor}` is taken as `cie1931`"), film.at("sensor"));
@@ -54,9 +53,39 @@ impl Reader<'_, '_> {
         }
         film.finish("Film", self.context.report);
         self.desc.film = Some(self.add(Family::Film, "film", params, film.span));
+        self.defaults()?;
         match self.camera.take() {
             Some(camera) => self.camera_node(&camera, size),
             None => Ok(()),
+        }
+    }
+
+    /// What pbrt takes where a file says nothing: a Gaussian, 16 samples, paths of five bounces.
+    fn defaults(&mut self) -> Result<(), SceneError> {
+        let empty = ParamSet::empty(aureole_desc::Span::NONE);
+        if self.desc.filter.is_none() {
+            self.filter("gaussian", &empty)?;
+        }
+        if self.desc.sampler.is_none() {
+            self.sampler("zsobol", &empty)?;
+        }
+        if self.desc.integrator.is_none() {
+            self.integrator("volpath", &empty)?;
+        }
+        Ok(())
+    }
+
+    /// How long the film sees light: while the camera's shutter is open.
+    fn exposure(&self, film: &ParamSet) -> Result<f64, SceneError> {
+        if let Some(time) = film.try_float("exposuretime")? {
+            return Ok(time.max(0.0));
+        }
+        let Some(PendingCamera { params, .. }) = &self.camera else { return Ok(1.0) };
+        let time = params.float("shutterclose", 1.0)? - params.float("shutteropen", 0.0)?;
+        if time > 0.0 {
+            Ok(time)
+        } else {
+            Err(SceneError::invalid("the shutter does not open: the image would be black", params.span))
         }
     }
 

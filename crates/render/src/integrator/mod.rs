@@ -2,6 +2,7 @@
 
 mod ambient_occlusion;
 mod direct;
+mod layers;
 mod lighting;
 mod path;
 mod raycast;
@@ -34,6 +35,7 @@ pub struct PathStart {
 pub struct Batch {
     path: PathState,
     rays: u64,
+    layers: Vec<f32>,
 }
 
 impl Batch {
@@ -46,13 +48,24 @@ impl Batch {
         radiance: &mut [Spectrum],
     ) -> u64 {
         self.rays = 0;
+        self.layers.clear();
         integrator.trace(scene, starts, radiance, self);
         self.rays
+    }
+
+    /// The values of the integrator's layers, ray by ray.
+    pub(crate) fn layers(&self) -> &[f32] {
+        &self.layers
     }
 }
 
 /// A light transport algorithm.
 pub trait Integrator: Send + Sync {
+    /// The names of what it gathers besides radiance: channels of the image such as `albedo.R`.
+    fn layers(&self) -> &[String] {
+        &[]
+    }
+
     /// Estimates the radiance along each ray of a batch; `radiance` comes in black.
     fn trace(&self, scene: &Scene, starts: &[PathStart], radiance: &mut [Spectrum], batch: &mut Batch);
 
@@ -111,6 +124,7 @@ pub fn integrators() -> &'static [IntegratorManual] {
         views::UV,
         views::ALBEDO,
         views::PRIMITIVE_ID,
+        layers::MANUAL,
     ];
     ALL
 }
@@ -126,7 +140,10 @@ pub(crate) fn build(scene: &Scene, name: Option<&str>) -> Result<Box<dyn Integra
             known: integrators().iter().map(|manual| manual.kind.to_owned()).collect(),
             at: *span,
         })?;
-    (manual.build)(&mut params.clone())
+    let mut params = params.clone();
+    let layers = layers::Layer::from_params(&mut params)?;
+    let integrator = (manual.build)(&mut params)?;
+    Ok(if layers.is_empty() { integrator } else { layers::with_layers(integrator, layers) })
 }
 
 /// Warns about parameters of the scene's integrator that it does not know.
@@ -134,7 +151,7 @@ pub fn check_parameters(scene: &Scene, report: &mut Report) {
     let node = &scene.integrator;
     if let Some(manual) = integrators().iter().find(|manual| manual.kind == node.kind) {
         let mut params = node.params.clone();
-        if (manual.build)(&mut params).is_ok() {
+        if layers::Layer::from_params(&mut params).is_ok() && (manual.build)(&mut params).is_ok() {
             params.warn_unused(&format!("integrator `{}`", node.kind), manual.params, report);
         }
     }

@@ -1,5 +1,6 @@
 //! `normals`, `depth`, `uv`, `albedo`, `primitive_id`: views of the first surface, for finding mistakes.
 
+use aureole_desc::ParamDoc;
 use aureole_math::hash_u32;
 use aureole_scene::{Interaction, Scene, SceneHit};
 use aureole_spectrum::{Spectrum, Wavelengths};
@@ -19,8 +20,19 @@ pub(super) const NORMALS: IntegratorManual = IntegratorManual {
 pub(super) const DEPTH: IntegratorManual = IntegratorManual {
     kind: "depth",
     summary: "Distance from the camera, in scene units.",
-    params: &[],
-    build: |_| view(|_, start, hit, _| [hit.t * start.ray.direction.length(); 3]),
+    params: &[ParamDoc {
+        name: "from_near_clip",
+        ty: "bool",
+        default: "false",
+        doc: "measure from the camera's near plane",
+    }],
+    build: |params| {
+        if params.bool("from_near_clip", false)? {
+            view(|_, start, hit, _| [hit.t - start.ray.t_min; 3])
+        } else {
+            view(|_, start, hit, _| [hit.t * start.ray.direction.length(); 3])
+        }
+    },
 };
 
 pub(super) const UV: IntegratorManual = IntegratorManual {

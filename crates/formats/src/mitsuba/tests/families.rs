@@ -179,19 +179,35 @@ fn integrators() {
             r#"<integrator type="direct"><integer name="shading_samples" value="3"/></integrator>"#,
             "direct(emitter_samples=3 bsdf_samples=3)",
         ),
-        (r#"<integrator type="moment"><integrator type="path"/></integrator>"#, "path()"),
+        (
+            r#"<integrator type="moment"><integrator type="path"/></integrator>"#,
+            "path(layers=_arg_0:xyz,m2__arg_0:xyz2)",
+        ),
+        (r#"<integrator type="ptracer"/>"#, "path()"),
+        (r#"<integrator type="depth"/>"#, "depth(from_near_clip=true)"),
         (r#"<integrator type="volpath"/>"#, "path()"),
-        (r#"<integrator type="aov"><string name="aovs" value="nn:sh_normal"/></integrator>"#, "normals()"),
+        (
+            r#"<integrator type="aov"><string name="aovs" value="nn:sh_normal"/></integrator>"#,
+            "aov(layers=nn:sh_normal)",
+        ),
+        (
+            r#"<integrator type="aov"><string name="aovs" value="dd.y:depth, uv:uv"/><integrator type="path" name="image"/></integrator>"#,
+            "path(layers=image:radiance,dd.y:depth,uv:uv)",
+        ),
+        (
+            r#"<integrator type="aov"><string name="aovs" value="d:depth"/><integrator type="moment" name="m"><integrator type="direct" name="p"/></integrator></integrator>"#,
+            "direct(layers=m:radiance,d:depth,m.p:xyz,m.m2_p:xyz2)",
+        ),
     ] {
         let (scene, warnings) = read(xml);
         assert!(warnings.is_empty(), "{warnings:?}");
         assert_eq!(show(&scene, scene.integrator.unwrap()), text);
     }
     let (scene, warnings) = read(
-        r#"<integrator type="aov"><string name="aovs" value="dd:depth"/><integrator type="path"/></integrator>"#,
+        r#"<integrator type="aov"><string name="aovs" value="dd:depth,d:duv_dx"/><integrator type="path"/></integrator>"#,
     );
-    assert_eq!(show(&scene, scene.integrator.unwrap()), "path()");
-    assert_eq!(warnings.len(), 1);
+    assert_eq!(show(&scene, scene.integrator.unwrap()), "path(layers=_arg_0:radiance,dd:depth)");
+    assert_eq!(warnings, ["the layer `d:duv_dx` is left out"]);
     let (_, warnings) = read(r#"<integrator type="volpath"/><medium type="homogeneous" id="m"/>"#);
     assert_eq!(warnings, ["participating media are not rendered yet: `volpath` is rendered as `path`"]);
 }
