@@ -106,8 +106,9 @@ impl FilmTile {
             };
             for (i, &wx) in along_x.iter().enumerate() {
                 let weight = wx * wy;
-                let Some(column) =
-                    (cx + i as u32).checked_sub(bx).filter(|column| *column < self.grid.width && weight != 0.0)
+                let Some(column) = (cx + i as u32)
+                    .checked_sub(bx)
+                    .filter(|column| *column < self.grid.width && weight != 0.0)
                 else {
                     continue;
                 };

@@ -194,8 +194,7 @@ fn channels(film: &Film) -> BTreeMap<String, Plane> {
 /// Layers are channels of an image: their names differ from each other and from the picture's.
 fn check_names(names: Vec<String>) -> Result<Vec<String>, FilmError> {
     const MOST: usize = 256;
-    let mut sorted: Vec<&str> =
-        names.iter().map(String::as_str).chain(["R", "G", "B", "Y"]).collect();
+    let mut sorted: Vec<&str> = names.iter().map(String::as_str).chain(["R", "G", "B", "Y"]).collect();
     sorted.sort_unstable();
     if names.len() > MOST || sorted.windows(2).any(|pair| pair[0] == pair[1]) {
         return Err(FilmError::NotAFilm("its layers make no sense".into()));

@@ -20,8 +20,9 @@ const ACCEL_TRIANGLE: u64 = 62;
 const BUILD_TRIANGLE: u64 = 60;
 /// Bytes of any other shape or instance, with its boxes.
 const OTHER_SHAPE: u64 = 1024;
-/// The film is kept in tiles, and copied where it is looked at: for a checkpoint, for the image.
-const FILM_COPIES: u64 = 2;
+/// The film is kept in tiles, which overlap as far as filters reach (half as much again for a Gaussian), and copied where it
+/// is looked at: for a checkpoint, for the image.
+const FILM_COPIES: u64 = 3;
 /// Bytes of a pixel of the finished image: three floats.
 const OUTPUT_PIXEL: u64 = 3 * 4;
 

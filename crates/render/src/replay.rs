@@ -9,8 +9,8 @@ use aureole_spectrum::Spectrum;
 
 use crate::film::LARGEST;
 use crate::integrator::{self, Batch, PathStart};
-use crate::splat::Splatter;
 use crate::render::{RenderOptions, SampleId, start_path};
+use crate::splat::Splatter;
 
 /// Something that happens on a path.
 #[derive(Clone, Debug, PartialEq)]

@@ -281,7 +281,16 @@ impl Compiler<'_> {
         let desc = self.resolve.desc;
         if let Some(&node) = desc.cameras.get(self.options.camera) {
             self.resolve.expect(node, Family::Camera)?;
-            return Camera::build(&desc[node], &mut self.resolve);
+            if desc[node].kind != "distant" {
+                return Camera::build(&desc[node], &mut self.resolve);
+            }
+            let mut node = desc[node].clone();
+            if !bounds.is_empty() {
+                let center = bounds.centroid().to_array().map(f64::from);
+                node.params.push("scene_center", Value::Vec3(center), node.span);
+                node.params.push("scene_radius", Value::Float(f64::from(bounds.radius())), node.span);
+            }
+            return Camera::build(&node, &mut self.resolve);
         }
         if self.options.camera > 0 {
             let message =

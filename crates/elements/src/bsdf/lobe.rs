@@ -4,9 +4,10 @@ use aureole_math::{Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
 use super::{
-    BaekPlasticLobe, ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, GlossLobe, HairLobe, LayeredLobe,
-    MeasuredLobe, MerlLobe, NullLobe, PlasticLobe, PrincipledLobe, PrincipledThinLobe, RoughConductorLobe,
-    RoughDielectricLobe, RoughDiffuseLobe, RoughPlasticLobe, SheenLobe, ThinDielectricLobe,
+    BaekPlasticLobe, ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, GlossLobe,
+    HairLobe, LayeredLobe, MeasuredLobe, MerlLobe, NullLobe, PlasticLobe, PrincipledLobe, PrincipledThinLobe,
+    RoughConductorLobe, RoughDielectricLobe, RoughDiffuseLobe, RoughPlasticLobe, SheenLobe,
+    ThinDielectricLobe,
 };
 
 /// What travels along a path: refraction squeezes radiance, but not importance.

@@ -2,18 +2,22 @@
 //!
 //! Camera space looks along +Z with +Y up; the right of the image is −X (right-handed).
 
+mod distant;
 mod fov;
 mod orthographic;
 mod perspective;
+mod radiance_meter;
 mod spherical;
 
 use std::fmt::Debug;
 
 use aureole_math::{Point2, Ray};
 
+pub use distant::Distant;
 pub use fov::FovAxis;
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
+pub use radiance_meter::RadianceMeter;
 pub use spherical::Spherical;
 
 /// Which ray of a camera is wanted.
@@ -40,6 +44,8 @@ registry! {
     perspective::Perspective as Perspective = "perspective",
     orthographic::Orthographic as Orthographic = "orthographic",
     spherical::Spherical as Spherical = "spherical",
+    radiance_meter::RadianceMeter as RadianceMeter = "radiance_meter",
+    distant::Distant as Distant = "distant",
 }
 
 impl Camera {

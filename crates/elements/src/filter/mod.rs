@@ -29,8 +29,8 @@ pub struct FilterSample {
 
 /// What every reconstruction filter can do.
 ///
-/// Pixels are estimated by filter importance sampling [Ernst et al. 2006]: each sample belongs to one pixel, so an image
-/// does not depend on the order in which tiles are drawn.
+/// Filters are products of an even function of x and one of y. Samples are shared by all pixels whose filters cover them, or,
+/// for filters of one pixel and for very wide ones, drawn in proportion to the filter [Ernst et al. 2006].
 pub trait FilterOps: Debug + Send + Sync {
     /// Half the extent in x and y, in pixels.
     fn radius(&self) -> Vector2;

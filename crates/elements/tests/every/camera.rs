@@ -123,3 +123,27 @@ fn spherical_cameras_see_everything() {
         }
     }
 }
+
+/// A faraway sensor sees all of the scene's ball, or one point; a meter sees one direction.
+#[test]
+fn distant_rays_cover_the_scene() {
+    let ball = [("scene_center", Value::Vec3([1.0, 2.0, 3.0])), ("scene_radius", Float(2.0))];
+    let center = Point3::new(1.0, 2.0, 3.0);
+    let [middle, radius] = ball;
+    let all = camera("distant", params([middle.clone(), radius.clone(), place()]));
+    let one = camera("distant", params([middle, radius, ("target", Value::Vec3([0.0, 0.0, 9.0]))]));
+    let mut rng = Pcg32::new(1);
+    let (mut nearest, mut farthest) = (f32::INFINITY, 0.0_f32);
+    for _ in 0..1000 {
+        let r = ray(&all, 0.5, 0.5, rng.point2());
+        let to_center = center - r.origin;
+        let aside = (to_center - r.direction * to_center.dot(r.direction)).length();
+        assert!((to_center.dot(r.direction) - 2.0).abs() < 1e-4, "rays begin outside");
+        (nearest, farthest) = (nearest.min(aside), farthest.max(aside));
+        let r = ray(&one, 0.5, 0.5, rng.point2());
+        let target = Point3::new(0.0, 0.0, 9.0);
+        assert!((r.at((target - r.origin).length()) - target).length() < 1e-4);
+        assert!((r.origin - center).length() >= 2.0);
+    }
+    assert!(nearest < 0.1 && farthest > 1.95 && farthest < 2.001, "{nearest} {farthest}");
+}

@@ -5,7 +5,7 @@ use aureole_desc::{Family, NodeId, SceneError, Value};
 use super::scope::Scope;
 use super::sensor;
 use super::translate::Translator;
-use super::tree::ObjectId;
+use super::tree::{ObjectId, Tag};
 
 /// Mitsuba's plugins and Aureole's words for them. Not all of the latter can be rendered yet.
 const KINDS: &[(&str, &str)] = &[
@@ -17,6 +17,7 @@ const KINDS: &[(&str, &str)] = &[
     ("envmap", "envmap"),
     ("projector", "projector"),
     ("sunsky", "sunsky"),
+    ("timed_sunsky", "sunsky"),
     // Half of it each, as in Mitsuba 0.6.
     ("sky", "sunsky"),
     ("sun", "sunsky"),
@@ -69,9 +70,28 @@ fn sun_and_sky(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<
         "sun" => scope.default("sky_scale", Value::Float(0.0)),
         _ => {}
     }
-    let at = scope.values.span("complex_sun");
-    if scope.bool("complex_sun", false)? {
-        t.context.report.warn("the sun's disk is drawn evenly: `complex_sun` has no effect", at);
+    scope.rename("complex_sun", "limb_darkening");
+    if scope.object.plugin == "timed_sunsky" { timed(t, scope) } else { Ok(()) }
+}
+
+/// A sky over a span of time, as it is when the shutter opens: on the first day, at the window's first hour.
+fn timed(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(), SceneError> {
+    let shutter = |name: &str| {
+        let mut sensors = t.tree.objects().filter(|object| object.tag == Tag::Sensor);
+        sensors.find_map(|sensor| sensor.values.clone().try_float(name).ok().flatten()).unwrap_or(0.0)
+    };
+    if shutter("shutter_close") > shutter("shutter_open") {
+        let message = "time does not move the sun: the sky is that of the moment in which the shutter opens";
+        t.context.report.warn(message, scope.span());
     }
+    for (theirs, ours, default) in
+        [("start_year", "year", 2025), ("start_month", "month", 1), ("start_day", "day", 1)]
+    {
+        let value = scope.int(theirs)?.unwrap_or(default);
+        scope.out.push(ours, Value::Int(value), scope.span());
+    }
+    let hour = scope.float("window_start_time")?.unwrap_or(7.0);
+    scope.out.push("hour", Value::Float(hour), scope.span());
+    scope.ignore(&["end_year", "end_month", "end_day", "window_end_time", "shutter_open", "shutter_close"]);
     Ok(())
 }

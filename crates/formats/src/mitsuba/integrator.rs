@@ -110,10 +110,15 @@ fn wrapper<'a>(t: &mut Translator<'a, '_, '_>, mut scope: Scope<'a>) -> Result<(
     };
     let params = &mut t.scene[integrator].params;
     let inner_layers = params.try_string("layers")?;
-    let inner_layers = inner_layers.iter().flat_map(|list| list.split(',')).map(|layer| format!("{name}.{layer}"));
+    let inner_layers =
+        inner_layers.iter().flat_map(|list| list.split(',')).map(|layer| format!("{name}.{layer}"));
     let all: Vec<String> = layers.into_iter().chain(inner_layers).collect();
     if !all.is_empty() {
-        params.set(Param { name: "layers".to_owned(), value: Value::String(all.join(",")), span: scope.span() });
+        params.set(Param {
+            name: "layers".to_owned(),
+            value: Value::String(all.join(",")),
+            span: scope.span(),
+        });
     }
     Ok(())
 }

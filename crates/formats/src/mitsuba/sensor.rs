@@ -1,6 +1,7 @@
 //! Cameras.
 
 use aureole_desc::{Family, SceneError, Value};
+use aureole_math::{Point3, Transform, Vector3};
 
 use super::film;
 use super::scope::Scope;
@@ -39,6 +40,7 @@ pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), S
             }
             scope.default("focus_distance", Value::Float(10_000.0));
         }
+        "radiancemeter" | "distant" => directed(&mut scope)?,
         _ => scope.ignore(&["focus_distance"]),
     }
 
@@ -51,6 +53,25 @@ pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), S
     }
     let camera = t.finish(scope, Family::Camera, kind)?;
     t.scene.cameras.push(camera);
+    Ok(())
+}
+
+/// A meter's place and direction, in place of `to_world`.
+fn directed(scope: &mut Scope<'_>) -> Result<(), SceneError> {
+    let at = scope.values.span("direction");
+    if let Some(direction) = scope.values.try_vec3("direction")? {
+        let origin = Point3::from(scope.values.vec3("origin", [0.0; 3])?);
+        let direction = Vector3::from(direction);
+        let up = if direction.x.abs() + direction.y.abs() > 1e-3 * direction.length() {
+            Vector3::Z
+        } else {
+            Vector3::Y
+        };
+        let place = Transform::look_at(origin, origin + direction, up)
+            .ok_or_else(|| SceneError::invalid("`direction` must not be zero", at))?;
+        scope.out.push("world_from_camera", Value::Transform(place), at);
+    }
+    scope.ignore(&["origin", "direction", "shutter_open", "shutter_close"]);
     Ok(())
 }
 

@@ -73,6 +73,35 @@ fn the_camera_is_mirrored_into_a_right_handed_space() {
 }
 
 #[test]
+fn what_a_file_leaves_out_is_what_pbrt_takes() {
+    let desc = good("Camera \"perspective\" WorldBegin");
+    let [filter, sampler, integrator] =
+        [desc.filter, desc.sampler, desc.integrator].map(|id| &desc[id.unwrap()]);
+    assert_eq!(
+        (filter.kind.as_str(), filter.params.get("radius")),
+        ("gaussian", Some(&Value::Vec2([1.5; 2])))
+    );
+    assert_eq!((sampler.kind.as_str(), sampler.params.get("sample_count")), ("sobol", Some(&Value::Int(16))));
+    assert_eq!(
+        (integrator.kind.as_str(), integrator.params.get("max_depth")),
+        ("path", Some(&Value::Int(6)))
+    );
+}
+
+#[test]
+fn films_see_light_while_the_shutter_is_open() {
+    let gain = |camera: &str, film: &str| {
+        let desc = good(&format!("Film \"rgb\" {film} Camera \"perspective\" {camera} WorldBegin"));
+        desc[desc.film.unwrap()].params.get("gain").cloned()
+    };
+    assert_eq!(gain("", ""), None);
+    assert_eq!(gain("", "\"float iso\" 200"), Some(Value::Float(2.0)));
+    let shutter = "\"float shutteropen\" 0.5 \"float shutterclose\" 0.75";
+    assert_eq!(gain(shutter, "\"float iso\" 800"), Some(Value::Float(2.0)));
+    assert!(mistake("Camera \"perspective\" \"float shutterclose\" 0 WorldBegin").0.contains("shutter"));
+}
+
+#[test]
 fn parameters_of_every_type() {
     let desc = good(
         "WorldBegin Material \"diffuse\" \"rgb reflectance\" [.1 .2 .3] Shape \"sphere\" \"float radius\" 2

@@ -212,10 +212,12 @@ impl Integrator for Layered {
 
 #[cfg(test)]
 mod tests {
+    use aureole_desc::Value;
+
     use super::*;
 
     fn layers(text: &str) -> Result<Vec<Layer>, SceneError> {
-        Layer::from_params(&mut Params::new().with("layers", text.to_owned()))
+        Layer::from_params(&mut Params::new().with("layers", Value::String(text.to_owned())))
     }
 
     #[test]

@@ -12,9 +12,10 @@
 //! | `sun_scale` | float | 1 | factor of the sun; 0 is without |
 //! | `sky_scale` | float | 1 | factor of the sky |
 //! | `sun_aperture` | float | 0.5358 | angle across the sun's disk, degrees; its irradiance stays the same |
+//! | `limb_darkening` | bool | false | let the sun's disk darken towards its edge; its irradiance stays the same |
 //! | `world_from_light` | transform | identity | up is +Z of the light's space, south is +X |
 //!
-//! Below the horizon it is black. The sun's disk is even: the darkening of its limb is averaged. Very low suns are redder
+//! Below the horizon it is black. Unless it is asked for, the darkening of the sun's limb is averaged. Very low suns are redder
 //! than Rec. 709 can say, and their blue is negative.
 //!
 //! The model is that of [Hošek and Wilkie 2012, 2013]; directions are drawn from a table of the sky's luminance and from the
@@ -29,7 +30,7 @@ use aureole_desc::{ParamDoc, Params, SceneError, Span};
 use aureole_math::{Bounds3, Frame, PiecewiseConstant2D, Point2, Point3, Transform, Vector3, warp};
 use aureole_spectrum::{Spectrum, SpectrumRole, luminance};
 
-use self::model::{SUN_HALF_ANGLE, Sky, sun_radiance};
+use self::model::{SUN_HALF_ANGLE, Sky, limb_darkening, sun_radiance};
 use self::position::PlaceAndTime;
 use super::{LightContext, LightOps, LightSample};
 use crate::{Element, Resolver, SurfacePoint};
@@ -44,6 +45,7 @@ pub struct SunSky {
     /// To the sun, in the light's space.
     sun_frame: Frame,
     one_minus_cos_sun: f32,
+    has_dark_limb: bool,
     world_from_light: Transform,
     light_from_world: Transform,
     /// Over azimuth and the cosine with the zenith; `None` without a sky.
@@ -57,7 +59,7 @@ pub struct SunSky {
 /// Cells of the sampling table, around and up.
 const CELLS: [usize; 2] = [128, 64];
 
-const OWN_PARAMS: [ParamDoc; 7] = [
+const OWN_PARAMS: [ParamDoc; 8] = [
     ParamDoc { name: "turbidity", ty: "float", default: "3", doc: "haze, 1 to 10" },
     ParamDoc { name: "albedo", ty: "spectrum", default: "0.3", doc: "of the ground" },
     ParamDoc {
@@ -69,11 +71,17 @@ const OWN_PARAMS: [ParamDoc; 7] = [
     ParamDoc { name: "sun_scale", ty: "float", default: "1", doc: "factor of the sun" },
     ParamDoc { name: "sky_scale", ty: "float", default: "1", doc: "factor of the sky" },
     ParamDoc { name: "sun_aperture", ty: "float", default: "0.5358", doc: "angle across the sun, degrees" },
+    ParamDoc {
+        name: "limb_darkening",
+        ty: "bool",
+        default: "false",
+        doc: "let the sun's disk darken towards its edge",
+    },
     ParamDoc { name: "world_from_light", ty: "transform", default: "identity", doc: "+Z is up" },
 ];
 
-const ALL_PARAMS: [ParamDoc; 16] = {
-    let mut all = [OWN_PARAMS[0]; 16];
+const ALL_PARAMS: [ParamDoc; 17] = {
+    let mut all = [OWN_PARAMS[0]; 17];
     let mut i = 0;
     while i < all.len() {
         all[i] = if i < OWN_PARAMS.len() { OWN_PARAMS[i] } else { position::PARAMS[i - OWN_PARAMS.len()] };
@@ -114,6 +122,7 @@ impl Element for SunSky {
             sun: if is_day { sun_radiance(turbidity, elevation).map(|c| c * sun_scale) } else { [0.0; 3] },
             sun_frame: Frame::from_normal(sun),
             one_minus_cos_sun: one_minus_cos(half_angle),
+            has_dark_limb: params.bool("limb_darkening", false)?,
             world_from_light,
             light_from_world,
             distribution: None,
@@ -164,9 +173,24 @@ impl SunSky {
         self.sky.radiance(w.z, w.dot(self.sun_frame.n)).map(|c| c * self.sky_scale)
     }
 
+    /// One minus the cosine with the direction to the sun's middle: half the squared chord, without cancellation.
+    fn from_sun(&self, w: Vector3) -> f32 {
+        0.5 * (w - self.sun_frame.n).length_squared()
+    }
+
     fn is_in_sun(&self, w: Vector3) -> bool {
-        // Half the squared chord is one minus the cosine, without cancellation.
-        0.5 * (w - self.sun_frame.n).length_squared() <= self.one_minus_cos_sun
+        self.from_sun(w) <= self.one_minus_cos_sun
+    }
+
+    /// The sun's radiance in a direction within its disk.
+    fn sun_radiance(&self, w: Vector3) -> [f32; 3] {
+        if !self.has_dark_limb {
+            return self.sun;
+        }
+        // sin² x = (1 - cos x) (1 + cos x)
+        let sin2 = |one_minus_cos: f32| one_minus_cos * (2.0 - one_minus_cos);
+        let darkness = limb_darkening((1.0 - sin2(self.from_sun(w)) / sin2(self.one_minus_cos_sun)).max(0.0));
+        std::array::from_fn(|c| self.sun[c] * darkness[c])
     }
 
     fn radiance(&self, w: Vector3) -> Spectrum {
@@ -174,7 +198,7 @@ impl SunSky {
             return Spectrum::ZERO;
         }
         let sky = self.sky_radiance(w);
-        let sun = if self.is_in_sun(w) { self.sun } else { [0.0; 3] };
+        let sun = if self.is_in_sun(w) { self.sun_radiance(w) } else { [0.0; 3] };
         Spectrum::from_rgb(std::array::from_fn(|c| sky[c] + sun[c]))
     }
 

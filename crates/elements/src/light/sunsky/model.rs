@@ -101,6 +101,21 @@ pub(super) fn sun_radiance(turbidity: f32, elevation: f32) -> [f32; 3] {
     })
 }
 
+/// Radiance at a place of the sun's disk over the disk's mean, for the squared cosine of the angle between the line of sight
+/// and the sun's surface there.
+///
+/// The model's own darkening, a polynomial for each wavelength, in Rec. 709 through an atmosphere of turbidity 3; others
+/// differ from it by less than 0.007.
+pub(super) fn limb_darkening(cos2: f32) -> [f32; 3] {
+    const COEFFICIENTS: [[f32; 6]; 3] = [
+        [0.401063, 1.634109, -2.330080, 3.108781, -2.292284, 0.683865],
+        [0.317188, 1.658912, -1.825930, 2.114236, -1.393840, 0.380333],
+        [0.208238, 1.638553, -1.214936, 1.272335, -0.779365, 0.198573],
+    ];
+    let cos = cos2.clamp(0.0, 1.0).sqrt();
+    COEFFICIENTS.map(|coefficients| coefficients.iter().rev().fold(0.0, |sum, c| sum * cos + c))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,5 +153,18 @@ mod tests {
         for c in 0..3 {
             assert!((found[c] / expected[c] - 1.0).abs() < 1e-3, "{found:?} {expected:?}");
         }
+    }
+
+    /// Over a disk the squared cosine is spread evenly.
+    #[test]
+    fn a_dark_limb_takes_nothing_away() {
+        let n = 10_000;
+        let mut mean = [0.0_f64; 3];
+        for i in 0..n {
+            let darkness = limb_darkening((i as f32 + 0.5) / n as f32);
+            (0..3).for_each(|c| mean[c] += f64::from(darkness[c]) / f64::from(n));
+        }
+        assert!(mean.iter().all(|m| (m - 1.0).abs() < 1e-3), "{mean:?}");
+        assert!(limb_darkening(1.0)[2] > 1.3 && limb_darkening(0.0)[2] < 0.25);
     }
 }

@@ -144,10 +144,49 @@ fn lights() {
 }
 
 #[test]
+fn skies_over_a_span_of_time_are_those_of_its_begin() {
+    let sky = r#"<emitter type="timed_sunsky"><integer name="start_month" value="3"/><float name="window_start_time" value="9"/><integer name="end_year" value="2030"/></emitter>"#;
+    let (scene, warnings) = read(sky);
+    assert!(warnings.is_empty(), "{warnings:?}");
+    assert_eq!(show(&scene, scene.lights[0]), "sunsky(year=2025 month=3 day=1 hour=9)");
+    let shutter = r#"<sensor type="perspective"><float name="shutter_close" value="1"/></sensor>"#;
+    let (_, warnings) = read(&format!("{sky}{shutter}"));
+    assert_eq!(
+        warnings,
+        ["time does not move the sun: the sky is that of the moment in which the shutter opens"]
+    );
+}
+
+#[test]
+fn meters_look_along_their_direction() {
+    let (scene, warnings) = read(
+        r#"<sensor type="radiancemeter"><point name="origin" value="1, 2, 3"/><vector name="direction" value="0, 0, -2"/></sensor>
+        <sensor type="distant"><vector name="direction" value="0, 1, 0"/><point name="target" value="0, 0, 1"/></sensor>"#,
+    );
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let shown: Vec<_> = scene.cameras.iter().map(|&id| show(&scene, id)).collect();
+    assert!(shown[0].starts_with("radiance_meter(world_from_camera="), "{shown:?}");
+    assert!(shown[1].starts_with("distant(world_from_camera=") && shown[1].contains("target="), "{shown:?}");
+}
+
+#[test]
+fn optical_filters_are_seen_by_unpolarised_light() {
+    let filter = r#"<bsdf type="polarizer"><spectrum name="theta" value="90"/><rgb name="transmittance" value="0.5"/></bsdf>"#;
+    assert_eq!(show_bsdf(filter), "null(scale=0.5 transmittance=Rgb([0.5, 0.5, 0.5]))");
+    assert_eq!(
+        show_bsdf(r#"<bsdf type="circular"><boolean name="left_handed" value="true"/></bsdf>"#),
+        "null(scale=0.5)"
+    );
+    assert_eq!(show_bsdf(r#"<bsdf type="retarder"><float name="delta" value="90"/></bsdf>"#), "null()");
+    let plastic = r#"<bsdf type="pplastic"><float name="alpha" value="0.06"/></bsdf>"#;
+    assert_eq!(show_bsdf(plastic), "baek_plastic(distribution=beckmann alpha=0.06)");
+}
+
+#[test]
 fn cameras_with_what_hangs_below_them() {
     let (scene, warnings) = read(
         r#"<sensor type="thinlens"><float name="aperture_radius" value="0.1"/><string name="focal_length" value="50mm"/>
-            <film type="hdrfilm"><integer name="crop_offset_x" value="3"/><string name="pixel_format" value="rgba"/><rfilter type="lanczos"><integer name="lobes" value="2"/></rfilter></film>
+            <film type="hdrfilm"><integer name="crop_offset_x" value="3"/><string name="pixel_format" value="luminance"/><rfilter type="lanczos"><integer name="lobes" value="2"/></rfilter></film>
             <sampler type="multijitter"><integer name="sample_count" value="9"/></sampler></sensor>
         <sensor type="perspective"><float name="fov" value="30"/><float name="focus_distance" value="9"/><film type="hdrfilm"/></sensor>
         <sensor type="orthographic"/>"#,
@@ -163,7 +202,7 @@ fn cameras_with_what_hangs_below_them() {
         ]
     );
     let root = |id: Option<_>| show(&scene, id.unwrap());
-    assert_eq!(root(scene.film), "film(width=768 height=576 crop_x=3)");
+    assert_eq!(root(scene.film), "film(width=768 height=576 pixel_format=luminance crop_x=3)");
     assert_eq!(root(scene.filter), "lanczos(radius=2 tau=2)");
     assert_eq!(root(scene.sampler), "sobol(sample_count=9)");
 }
