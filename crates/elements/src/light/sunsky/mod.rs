@@ -174,12 +174,12 @@ impl SunSky {
     }
 
     /// One minus the cosine with the direction to the sun's middle: half the squared chord, without cancellation.
-    fn from_sun(&self, w: Vector3) -> f32 {
+    fn one_minus_cos_to_sun(&self, w: Vector3) -> f32 {
         0.5 * (w - self.sun_frame.n).length_squared()
     }
 
     fn is_in_sun(&self, w: Vector3) -> bool {
-        self.from_sun(w) <= self.one_minus_cos_sun
+        self.one_minus_cos_to_sun(w) <= self.one_minus_cos_sun
     }
 
     /// The sun's radiance in a direction within its disk.
@@ -189,7 +189,9 @@ impl SunSky {
         }
         // sin² x = (1 - cos x) (1 + cos x)
         let sin2 = |one_minus_cos: f32| one_minus_cos * (2.0 - one_minus_cos);
-        let darkness = limb_darkening((1.0 - sin2(self.from_sun(w)) / sin2(self.one_minus_cos_sun)).max(0.0));
+        let darkness = limb_darkening(
+            (1.0 - sin2(self.one_minus_cos_to_sun(w)) / sin2(self.one_minus_cos_sun)).max(0.0),
+        );
         std::array::from_fn(|c| self.sun[c] * darkness[c])
     }
 
