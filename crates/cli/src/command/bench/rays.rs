@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use aureole::accel::{Accuracy, Config, Hit, NoUserShapes, Quality, Structure, World};
-use aureole::math::Ray;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
