@@ -1,7 +1,7 @@
 //! Progress: a bar, only on a terminal and on standard error, so that it never ends up in a file; or lines for programs.
 
 use std::io::{IsTerminal, Write};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
 use aureole::render::{Film, Observer, Progress};
@@ -39,6 +39,8 @@ pub(crate) struct Watch<'a> {
     /// When a time limit decides rather than the number of samples.
     time: Option<Duration>,
     last_update: AtomicU64,
+    /// Whether the last checkpoint could not be written.
+    in_trouble: AtomicBool,
 }
 
 impl<'a> Watch<'a> {
@@ -57,7 +59,8 @@ impl<'a> Watch<'a> {
             bar
         });
         let lines = show == Show::Lines;
-        Self { signals, checkpoint, painter, bar, lines, time, last_update: AtomicU64::new(0) }
+        let (last_update, in_trouble) = (AtomicU64::new(0), AtomicBool::new(false));
+        Self { signals, checkpoint, painter, bar, lines, time, last_update, in_trouble }
     }
 
     /// Takes the line away.
@@ -125,10 +128,13 @@ impl Observer for Watch<'_> {
         let Some(checkpoint) = self.checkpoint else { return };
         let least = film.drawn()[0];
         match checkpoint.write(film) {
-            // Trouble now may be over when the next one is due; the render is worth more.
+            // Trouble now may be over when the next one is due; the render is worth more. It is told once.
             Err(Failure::Plain { message, .. }) => {
-                let help = "the render goes on, and the last checkpoint is as it was";
-                self.painter.warning(&message, Some(help));
+                if !self.in_trouble.swap(true, Ordering::Relaxed) {
+                    let help = "the render goes on, and the last checkpoint is as it was";
+                    self.painter.warning(&message, Some(help));
+                }
+                return;
             }
             _ if self.lines => print_line(&serde_json::json!({
                 "event": "checkpoint",
@@ -137,6 +143,7 @@ impl Observer for Watch<'_> {
             })),
             _ => {}
         }
+        self.in_trouble.store(false, Ordering::Relaxed);
     }
 }
 

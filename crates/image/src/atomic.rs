@@ -39,7 +39,8 @@ fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
         builder.permissions(std::fs::Permissions::from_mode(mode));
     }
     let mut file = builder.tempfile_in(&folder)?;
-    file.write_all(bytes)?;
+    // Into the file itself: errors of its wrapper name a file that nobody has asked for.
+    file.as_file_mut().write_all(bytes)?;
     if let Some(meta) = &old {
         file.as_file().set_permissions(meta.permissions())?;
     }
