@@ -67,6 +67,13 @@ pub enum Event {
         /// Through the surface.
         is_transmission: bool,
     },
+    /// The path scatters inside a body.
+    Turn {
+        /// Where.
+        p: Point3,
+        /// How much of what is found from here reaches the pixel.
+        throughput: Spectrum,
+    },
     /// The surface takes the path's light.
     Absorb,
     /// Russian roulette is played.
@@ -138,6 +145,7 @@ impl Event {
             // The density of a light that is a mere point is no number to divide by.
             Self::Light { wi, contribution, .. } => vector(*wi) && fits(contribution),
             Self::Scatter { wi, weight, .. } => vector(*wi) && weight.is_finite(),
+            Self::Turn { p, throughput } => p.is_finite() && throughput.is_finite(),
             Self::Roulette { survival, .. } => survival.is_finite(),
             Self::Unlit | Self::Shadow { .. } | Self::Absorb => true,
         }

@@ -102,6 +102,32 @@ pub fn glass(name: &str) -> Option<Arc<Tabulated>> {
     (c.len() == 6).then(|| Arc::new(Tabulated { lambda, values }))
 }
 
+/// How a substance scatters and absorbs light, per millimetre, in linear Rec. 709.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scattering {
+    /// The name, e.g. `Skimmilk`.
+    pub name: &'static str,
+    /// Reduced scattering: what scatters as much as isotropic scattering would.
+    pub scattering: [f32; 3],
+    /// Absorption.
+    pub absorption: [f32; 3],
+}
+
+/// All substances whose scattering was measured, by the names that pbrt gives them.
+pub fn scattering_substances() -> impl Iterator<Item = Scattering> {
+    rows(include_str!("../data/scattering.txt")).filter_map(|line| {
+        let mut rest = line;
+        let mut number = || {
+            let (word, after) = rest.split_once(' ')?;
+            rest = after.trim_start();
+            word.parse::<f32>().ok()
+        };
+        let mut three = || Some([number()?, number()?, number()?]);
+        let (scattering, absorption) = (three()?, three()?);
+        Some(Scattering { name: rest, scattering, absorption })
+    })
+}
+
 /// Planck's law: radiance in W·sr⁻¹·m⁻²·nm⁻¹ of a black body.
 pub fn blackbody(kelvin: f32) -> Tabulated {
     const H: f64 = 6.626_070_15e-34;
@@ -175,6 +201,14 @@ mod tests {
         assert!((glass("BK7").unwrap().eval(587.6) - 1.5168).abs() < 1e-3);
         assert!(named_spectrum("metal-Cu-k").is_some() && named_spectrum("metal-Xx-k").is_none());
         assert!(spectrum_names().iter().all(|name| named_spectrum(name).is_some()));
+    }
+
+    #[test]
+    fn substances_scatter() {
+        assert_eq!(scattering_substances().count(), 47);
+        let milk = scattering_substances().find(|s| s.name == "Wholemilk").unwrap();
+        assert_eq!((milk.scattering, milk.absorption), ([2.55, 3.21, 3.77], [0.0011, 0.0024, 0.014]));
+        assert!(scattering_substances().any(|s| s.name == "Head & Shoulders Shampoo"));
     }
 
     #[test]

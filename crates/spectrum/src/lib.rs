@@ -20,7 +20,8 @@ mod wavelengths;
 
 pub use color::{luminance, srgb_from_linear, srgb_from_xyz, srgb_to_linear, xyz_from_srgb};
 pub use data::{
-    Metal, blackbody, dielectric_ior, dielectrics, glass, metal, metals, named_spectrum, spectrum_names,
+    Metal, Scattering, blackbody, dielectric_ior, dielectrics, glass, metal, metals, named_spectrum,
+    scattering_substances, spectrum_names,
 };
 pub use source::{PreparedSpectrum, SpectrumRole, SpectrumSource, Tabulated};
 pub use spectrum::Spectrum;

@@ -92,6 +92,9 @@ impl<'a> Teller<'a> {
                     rgb(weight.rgb())
                 )
             }
+            Event::Turn { p, throughput } => {
+                format!("  turns      inside, at {}, throughput {}", xyz(p.to_array()), rgb(throughput.rgb()))
+            }
             Event::Absorb => "  absorb     the path ends".to_owned(),
             Event::Roulette { survival, survives } => {
                 let outcome = if *survives { "goes on" } else { "ends" };

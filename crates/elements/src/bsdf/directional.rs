@@ -9,10 +9,10 @@ use super::fresnel;
 use super::microfacet::{Distribution, Microfacet};
 
 /// Points of the quadrature in each dimension.
-const QUADRATURE: usize = 32;
+pub(super) const QUADRATURE: usize = 32;
 
 /// Nodes in [0, 1] and weights that sum to one of Gauss and Legendre's quadrature.
-fn gauss_legendre() -> [[f32; 2]; QUADRATURE] {
+pub(super) fn gauss_legendre() -> [[f32; 2]; QUADRATURE] {
     let n = QUADRATURE as f64;
     std::array::from_fn(|i| {
         // Newton's method from Tricomi's guess; the recurrence gives the polynomial and its derivative.

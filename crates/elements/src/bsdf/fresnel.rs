@@ -80,6 +80,27 @@ pub fn diffuse_reflectance(eta: f32) -> f32 {
     }
 }
 
+/// The mean reflectance of a dielectric boundary under uniform diffuse light from its outer side, exactly.
+///
+/// # References
+/// [Duntley 1942] "The Optical Properties of Diffusing Materials", Walsh's formula; from the denser side by what
+/// reciprocity asks of fluxes: (1 - R_inside) · eta² = 1 - R_outside.
+pub fn mean_reflectance(eta: f32) -> f32 {
+    let n = f64::from(eta.max(1.0 / eta));
+    // Next to one the formula is a difference of large numbers, and the reflectance below 2e-5.
+    if n < 1.002 {
+        return 0.0;
+    }
+    let (n2, n3) = (n * n, n * n * n);
+    let n4 = n2 * n2;
+    let outside = 0.5
+        + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0).powi(2))
+        + n2 * (n2 - 1.0).powi(2) / (n2 + 1.0).powi(3) * ((n - 1.0) / (n + 1.0)).ln()
+        - 2.0 * n3 * (n2 + 2.0 * n - 1.0) / ((n2 + 1.0) * (n4 - 1.0))
+        + 8.0 * n4 * (n4 + 1.0) / ((n2 + 1.0) * (n4 - 1.0).powi(2)) * n.ln();
+    if eta >= 1.0 { outside as f32 } else { (1.0 - (1.0 - outside) / n2) as f32 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -121,6 +142,7 @@ mod tests {
                 .sum::<f32>()
                 / n as f32;
             assert!((diffuse_reflectance(eta) - integral).abs() < 0.015, "{eta}: {integral}");
+            assert!((mean_reflectance(eta) - integral).abs() < 1e-4, "{eta}: {integral}");
         }
     }
 }

@@ -12,14 +12,15 @@
 use aureole_math::{Pcg32, Point2, Vector3, hash_u64, warp};
 use aureole_spectrum::Spectrum;
 
+use super::coat::Coat;
 use super::conductor::Metal;
 use super::dielectric::Glass;
 use super::lobe::Sides;
 use super::microfacet::Microfacet;
 use super::phase::HenyeyGreenstein;
 use super::{
-    ConductorLobe, DielectricLobe, DiffuseLobe, Lobe, LobeFlags, LobeOps, LobeSample, RoughConductorLobe,
-    RoughDielectricLobe, TransportMode, fresnel,
+    ConductorLobe, DiffuseLobe, Lobe, LobeFlags, LobeOps, LobeSample, RoughConductorLobe, TransportMode,
+    fresnel,
 };
 
 /// The opaque lower layer.
@@ -50,47 +51,6 @@ pub struct LayeredLobe {
     pub max_depth: u16,
     /// How many walks an estimate takes.
     pub sample_count: u16,
-}
-
-/// The coat, ready to be asked.
-enum Coat {
-    Smooth(DielectricLobe),
-    Rough(RoughDielectricLobe),
-}
-
-impl Coat {
-    fn is_delta(&self) -> bool {
-        matches!(self, Self::Smooth(_))
-    }
-
-    fn eval(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> Spectrum {
-        match self {
-            Self::Smooth(_) => Spectrum::ZERO,
-            Self::Rough(lobe) => lobe.eval(wo, wi, mode),
-        }
-    }
-
-    fn sample(
-        &self,
-        sides: Sides,
-        wo: Vector3,
-        uc: f32,
-        u: Point2,
-        mode: TransportMode,
-    ) -> Option<LobeSample> {
-        let drawn = match self {
-            Self::Smooth(lobe) => lobe.sample_from(sides, wo, uc, mode),
-            Self::Rough(lobe) => lobe.sample_from(sides, wo, uc, u, mode),
-        };
-        drawn.filter(|s| s.pdf_omega > 0.0 && s.wi.z != 0.0)
-    }
-
-    fn pdf(&self, sides: Sides, wo: Vector3, wi: Vector3) -> f32 {
-        match self {
-            Self::Smooth(_) => 0.0,
-            Self::Rough(lobe) => lobe.pdf_from(sides, wo, wi),
-        }
-    }
 }
 
 /// Light on its way between the layers.
@@ -172,10 +132,7 @@ impl LayeredLobe {
     fn coat(&self) -> Coat {
         let glass =
             Glass { eta: self.eta, reflectance: Spectrum::ONE, transmittance: Spectrum::ONE, film: None };
-        match self.coat {
-            Some(surface) => Coat::Rough(RoughDielectricLobe { glass, surface }),
-            None => Coat::Smooth(DielectricLobe { glass }),
-        }
+        Coat::new(glass, self.coat)
     }
 
     fn base(&self) -> Lobe {

@@ -4,10 +4,7 @@ use aureole_math::{Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
 use super::{
-    BaekPlasticLobe, ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, GlossLobe,
-    HairLobe, LayeredLobe, MeasuredLobe, MerlLobe, NullLobe, PlasticLobe, PrincipledLobe, PrincipledThinLobe,
-    RoughConductorLobe, RoughDielectricLobe, RoughDiffuseLobe, RoughPlasticLobe, SheenLobe,
-    ThinDielectricLobe,
+    BaekPlasticLobe, ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, GlossLobe, HairLobe, LayeredLobe, MeasuredLobe, MerlLobe, NullLobe, PlasticLobe, PrincipledLobe, PrincipledThinLobe, RoughConductorLobe, RoughDielectricLobe, RoughDiffuseLobe, RoughPlasticLobe, SheenLobe, SubsurfaceLobe, ThinDielectricLobe,
 };
 
 /// What travels along a path: refraction squeezes radiance, but not importance.
@@ -187,6 +184,7 @@ lobes! {
     Layered(LayeredLobe),
     Hair(HairLobe),
     Sheen(SheenLobe),
+    Subsurface(SubsurfaceLobe),
     Gloss(GlossLobe),
     RoughDiffuse(RoughDiffuseLobe),
     Measured(MeasuredLobe),

@@ -7,6 +7,7 @@ mod baek_plastic;
 mod bend;
 mod blend;
 mod bump;
+mod coat;
 mod coated_conductor;
 mod coated_diffuse;
 mod conductor;
@@ -19,6 +20,8 @@ pub mod fresnel;
 mod gloss;
 mod hair;
 mod hair_lobe;
+mod half_space;
+mod interior;
 mod layered;
 mod lobe;
 mod mask;
@@ -38,6 +41,8 @@ mod rough_diffuse;
 mod rough_plastic;
 mod sheen;
 mod stack;
+mod subsurface;
+mod subsurface_lobe;
 mod thin_dielectric;
 mod thin_film;
 mod two_sided;
@@ -61,6 +66,7 @@ pub use diffuse_transmission::{DiffuseTransmission, DiffuseTransmissionLobe};
 pub use gloss::GlossLobe;
 pub use hair::Hair;
 pub use hair_lobe::HairLobe;
+pub use interior::Interior;
 pub use layered::{Base, LayeredLobe};
 pub use lobe::{Lobe, LobeFlags, LobeOps, LobeSample, TransportMode};
 pub use mask::Mask;
@@ -78,6 +84,8 @@ pub use rough_diffuse::{RoughDiffuse, RoughDiffuseLobe};
 pub use rough_plastic::{RoughPlastic, RoughPlasticLobe};
 pub use sheen::{Sheen, SheenLobe};
 pub use stack::{Bsdf, BsdfSample};
+pub use subsurface::Subsurface;
+pub use subsurface_lobe::SubsurfaceLobe;
 pub use thin_dielectric::{ThinDielectric, ThinDielectricLobe};
 pub use thin_film::Film;
 pub use two_sided::TwoSided;
@@ -133,6 +141,7 @@ registry! {
     principled::Principled as Principled = "principled",
     principled_thin::PrincipledThin as PrincipledThin = "principled_thin",
     open_pbr::OpenPbr as OpenPbr = "open_pbr",
+    subsurface::Subsurface as Subsurface = "subsurface",
     rough_diffuse::RoughDiffuse as RoughDiffuse = "rough_diffuse",
     measured::Measured as Measured = "measured",
     merl::Merl as Merl = "merl",

@@ -4,7 +4,7 @@ use arrayvec::ArrayVec;
 use aureole_math::{Frame, Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
-use super::{Lobe, LobeFlags, LobeOps, TransportMode};
+use super::{Interior, Lobe, LobeFlags, LobeOps, TransportMode};
 
 /// How many lobes a BSDF may have; blends deeper than that lose their last ones.
 const MAX_LOBES: usize = 8;
@@ -19,12 +19,15 @@ struct Placed {
     base_normal: Vector3,
     /// Squared roughness of the facets that a bent normal stands for; zero where nothing is softened.
     bump_alpha2: f32,
+    /// What light meets that goes through it: a place in the list of interiors.
+    interior: Option<u8>,
 }
 
 /// The scattering at a point of a surface, in world space. The weights of its lobes sum to at most one.
 #[derive(Clone, Debug, Default)]
 pub struct Bsdf {
     lobes: ArrayVec<Placed, MAX_LOBES>,
+    interiors: ArrayVec<Interior, MAX_LOBES>,
 }
 
 /// A direction drawn from a BSDF.
@@ -40,6 +43,8 @@ pub struct BsdfSample {
     pub flags: LobeFlags,
     /// Relative index of refraction along the path.
     pub eta: f32,
+    /// The interior behind the lobe, if the direction goes through it: see [`Bsdf::interior`].
+    pub interior: Option<u8>,
 }
 
 impl Placed {
@@ -93,8 +98,39 @@ impl Bsdf {
     #[inline]
     pub fn push(&mut self, lobe: impl Into<Lobe>, weight: f32, frame: Frame, base_normal: Vector3) {
         if weight > 0.0 && !self.lobes.is_full() {
-            self.lobes.push(Placed { lobe: lobe.into(), weight, frame, base_normal, bump_alpha2: 0.0 });
+            let lobe = lobe.into();
+            self.lobes.push(Placed { lobe, weight, frame, base_normal, bump_alpha2: 0.0, interior: None });
         }
+    }
+
+    /// Adds a lobe that is the boundary of a body filled by `interior`.
+    #[inline]
+    pub fn push_boundary(
+        &mut self,
+        lobe: impl Into<Lobe>,
+        interior: Interior,
+        weight: f32,
+        frame: Frame,
+        base_normal: Vector3,
+    ) {
+        let before = self.lobes.len();
+        self.push(lobe, weight, frame, base_normal);
+        if self.lobes.len() > before {
+            self.lobes[before].interior = Some(self.interiors.len() as u8);
+            self.interiors.push(interior);
+        }
+    }
+
+    /// Whether some lobe is the boundary of a filled body.
+    #[inline]
+    pub fn has_interior(&self) -> bool {
+        !self.interiors.is_empty()
+    }
+
+    /// The interior that a sample names.
+    #[inline]
+    pub fn interior(&self, index: u8) -> Interior {
+        self.interiors[usize::from(index)]
     }
 
     /// Lets the sides of all lobes from the `first` on be judged by the normal before it was bent, and their terminator
@@ -124,6 +160,7 @@ impl Bsdf {
     #[inline]
     pub fn clear(&mut self) {
         self.lobes.clear();
+        self.interiors.clear();
     }
 
     /// Whether [`sample`](Self::sample) looks at `uc`.
@@ -193,7 +230,8 @@ impl Bsdf {
             (self.eval_cos(wo, wi, mode) / pdf_omega, pdf_omega)
         };
         let usable = pdf_omega > 0.0 && weight.is_finite() && !weight.is_black();
-        usable.then_some(BsdfSample { wi, weight, pdf_omega, flags: drawn.flags, eta: drawn.eta })
+        let interior = if drawn.flags.transmission { chosen.interior } else { None };
+        usable.then_some(BsdfSample { wi, weight, pdf_omega, flags: drawn.flags, eta: drawn.eta, interior })
     }
 
     /// The lobe at `uc`, and `uc` stretched to be used again.

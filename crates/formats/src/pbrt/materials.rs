@@ -302,45 +302,28 @@ impl Reader<'_, '_> {
         Ok(("blend", params))
     }
 
-    /// The matte look of light that scatters inside, below a coat; light does not travel along the surface.
+    /// A body that scatters inside. As in pbrt, light leaves it in directions that do not depend on how it came.
     fn subsurface(&mut self, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
         let at = given.span;
-        self.warn("`subsurface` is rendered as a matte base below a coat: light stays where it enters", at);
-        let mut params = Params::new();
-        let g = given.float("g", 0.0)? as f32;
-        let absorption = given.spectrum("sigma_a", self)?;
-        let scattering = given.spectrum("sigma_s", self)?;
-        let reflectance = match given.textured("reflectance", self)? {
-            Some(reflectance) => reflectance,
-            None => {
-                // pbrt's defaults, per millimetre.
-                let [a, s] = [(absorption, [0.0011, 0.0024, 0.014]), (scattering, [2.55, 3.21, 3.77])]
-                    .map(|(given, default)| given.map_or(default, |x| x.to_rgb(SpectrumRole::Unbounded)));
-                Value::Spectrum(SpectrumSource::Rgb([0, 1, 2].map(|i| diffuse_albedo(a[i], s[i], g))))
+        let names = ["sigma_a", "sigma_s", "reflectance", "mfp"];
+        let mut params = self.copied(given, &names.map(|name| (name, name)))?;
+        if let Some(name) = given.text("name")?.filter(|name| !name.is_empty()) {
+            params.push("name", Value::String(name.to_owned()), given.at("name"));
+            // A name decides alone.
+            for other in names {
+                params.take(other);
             }
-        };
-        params.push("reflectance", reflectance, at);
+        }
+        for (name, default) in [("g", 0.0), ("scale", 1.0)] {
+            params.push(name, Value::Float(given.float(name, default)?), given.at(name));
+        }
         let eta = if given.get("eta").is_some() { self.eta(given, "eta")? } else { 1.33 };
         params.push("int_ior", Value::Float(eta), at);
         params.push("ext_ior", Value::Float(1.0), at);
         let [u, v] = self.alphas(given, "", 0.0)?;
         params.push("alpha_u", u, at);
         params.push("alpha_v", v, at);
-        // How far light travels is what is not rendered; a name stands for coefficients.
-        for unused in ["mfp", "scale", "name"] {
-            given.get(unused);
-        }
-        Ok(("coated_diffuse", params))
+        params.push("exit", Value::String("diffuse".into()), at);
+        Ok(("subsurface", params))
     }
-}
-
-/// The albedo of a half space that absorbs and scatters: a fit to its exact solution.
-///
-/// # References
-/// [Kulla and Conty 2017] "Revisiting Physically Based Shading at Imageworks"; similarity by van de Hulst's `s`.
-fn diffuse_albedo(absorption: f32, scattering: f32, g: f32) -> f32 {
-    let total = (absorption + scattering).max(1e-9);
-    let single = scattering.max(0.0) / total;
-    let s = ((1.0 - single) / (1.0 - single * g).max(1e-6)).max(0.0).sqrt();
-    (1.0 - s) * (1.0 - 0.139 * s) / (1.0 + 1.17 * s)
 }

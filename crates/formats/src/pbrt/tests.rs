@@ -182,9 +182,29 @@ fn lights_and_textures_know_their_space() {
 }
 
 #[test]
+fn bodies_scatter_by_name_or_by_numbers() {
+    let desc = good(
+        "WorldBegin MakeNamedMaterial \"a\" \"string type\" \"subsurface\" \"string name\" \"Skin1\" \"float scale\" 10
+         MakeNamedMaterial \"b\" \"string type\" \"subsurface\" \"rgb reflectance\" [0.6 0.4 0.2] \"float mfp\" 2
+             \"float eta\" 1.5 \"float g\" 0.3 \"float roughness\" 0.25 \"bool remaproughness\" true",
+    );
+    let of = |name: &str| {
+        desc.nodes()
+            .find(|(_, node)| node.name.as_deref() == Some(name))
+            .map(|(_, node)| node.clone())
+            .unwrap()
+    };
+    assert_eq!(of("a").kind, "subsurface");
+    assert_eq!(of("a").params.get("name"), Some(&Value::String("Skin1".into())));
+    assert_eq!(of("a").params.get("scale"), Some(&Value::Float(10.0)));
+    assert_eq!(of("a").params.get("int_ior"), Some(&Value::Float(1.33)));
+    assert_eq!(of("b").params.get("alpha_u"), Some(&Value::Float(0.5)));
+    assert!(of("b").params.has("reflectance") && of("b").params.has("mfp") && !of("b").params.has("name"));
+}
+
+#[test]
 fn what_is_not_rendered_is_named() {
     for (text, word) in [
-        ("Material \"subsurface\"", "subsurface"),
         ("LightSource \"goniometric\"", "goniometric"),
         ("Texture \"a\" \"float\" \"ptex\"", "ptex"),
         ("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"", "media"),

@@ -7,6 +7,7 @@ mod lighting;
 mod path;
 mod raycast;
 mod views;
+mod walk;
 mod whitted;
 
 use aureole_desc::{Node, ParamDoc, Params, Report, SceneError};

@@ -8,12 +8,13 @@
 
 use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_elements::Bsdf;
-use aureole_elements::bsdf::TransportMode;
+use aureole_elements::bsdf::{BsdfSample, Interior, TransportMode};
 use aureole_math::{Point3, Ray};
 use aureole_scene::{Interaction, Scene, SceneHit};
 use aureole_spectrum::{Spectrum, Wavelengths};
 
 use super::lighting::{LightNumbers, Weighting, environment, light_pdf, power_heuristic, sample_light};
+use super::walk::{self, Numbers, Place};
 use super::{Batch, FIRST_FREE_DIMENSION, Integrator, IntegratorManual, PathStart, max_depth};
 use crate::replay::{Event, Nobody, Vertex, Watch};
 
@@ -61,6 +62,9 @@ struct Segment {
     eta: f32,
     /// The path's place in the batch.
     path: u32,
+    /// Segments before this one; all those inside a body that scatters are one.
+    depth: u32,
+    place: Place,
 }
 
 /// A shadow ray's path and what it may add.
@@ -82,6 +86,8 @@ pub(super) struct PathState {
     pending: Vec<Pending>,
     blocked: Vec<bool>,
     bsdf: Bsdf,
+    /// What fills the body that a path is in.
+    interiors: Vec<Interior>,
 }
 
 /// Random numbers of one bounce, by dimension.
@@ -110,12 +116,18 @@ impl Path {
         radiance: &mut [Spectrum],
         state: &mut PathState,
         i: usize,
-        depth: u32,
         watch: &mut W,
     ) {
-        let (ray, segment, hit) = (state.rays[i], state.segments[i], state.hits[i]);
+        let (ray, mut segment, hit) = (state.rays[i], state.segments[i], state.hits[i]);
+        if let Place::Inside { events } = segment.place {
+            let interior = state.interiors[segment.path as usize];
+            if !hit.is_some() && interior.scatters() {
+                return Self::scatter_inside(&starts[segment.path as usize], state, i, events, watch);
+            }
+            segment.throughput = walk::after_flight(&interior, segment.throughput, ray.origin, hit.t);
+        }
         let found = &mut radiance[segment.path as usize];
-        let is_visible = depth > 0 || !self.hide_emitters;
+        let is_visible = segment.depth > 0 || !self.hide_emitters;
         if !hit.is_some() {
             watch.hear(|| Event::Escape { direction: ray.direction });
             if is_visible {
@@ -141,9 +153,31 @@ impl Path {
                 *found += contribution;
             }
         }
-        if depth + 1 < self.max_depth {
-            self.scatter(scene, &starts[segment.path as usize], state, &ray, segment, &at, depth, watch);
+        if segment.depth + 1 < self.max_depth {
+            self.scatter(scene, &starts[segment.path as usize], state, &ray, segment, &at, watch);
         }
+    }
+
+    /// Turns a path inside a body.
+    fn scatter_inside<W: Watch>(
+        start: &PathStart,
+        state: &mut PathState,
+        i: usize,
+        events: u32,
+        watch: &mut W,
+    ) {
+        let (ray, segment) = (state.rays[i], state.segments[i]);
+        let interior = state.interiors[segment.path as usize];
+        let mut rng = walk::numbers_of(start.key, segment.depth, events);
+        let next = walk::scatter(&interior, &ray, segment.throughput, (segment.eta, events), &mut rng);
+        let Some((onward, throughput)) = next else {
+            watch.hear(|| Event::Absorb);
+            return;
+        };
+        watch.hear(|| Event::Turn { p: onward.origin, throughput });
+        state.next_rays.push(onward);
+        let place = Place::Inside { events: events + 1 };
+        state.next_segments.push(Segment { throughput, place, reference: onward.origin, ..segment });
     }
 
     /// Draws a light sample and the path's next direction.
@@ -156,23 +190,36 @@ impl Path {
         ray: &Ray,
         segment: Segment,
         at: &Interaction<'_>,
-        depth: u32,
         watch: &mut W,
     ) {
         let wo = -ray.direction;
-        let (sampler, key) = (&scene.sampler, start.key);
-        let dimension = FIRST_FREE_DIMENSION + depth * PER_BOUNCE;
-        // Numbers that decide nothing are not drawn.
-        let draw_if = |needed: bool, d: u32| if needed { sampler.get_1d(key, dimension + d) } else { 0.0 };
+        let depth = segment.depth;
+        // In a body that scatters the path has far more vertices than the sampler has dimensions.
+        let walked = match segment.place {
+            Place::Inside { events } if state.interiors[segment.path as usize].scatters() => Some(events),
+            _ => None,
+        };
+        let mut numbers = match walked {
+            Some(events) => Numbers::Walk(walk::numbers_of(start.key, depth, events)),
+            None => Numbers::Sampler {
+                sampler: &scene.sampler,
+                key: start.key,
+                dimension: FIRST_FREE_DIMENSION + depth * PER_BOUNCE,
+            },
+        };
         let bsdf = &mut state.bsdf;
         scene.bsdf_into(at, wo, Wavelengths::RGB, bsdf);
+        let has_interior = bsdf.has_interior();
+        let sees_open = |wi| walk::sees_open(segment.place, has_interior, at, wo, wi);
         if bsdf.is_smooth() {
             let numbers = LightNumbers {
-                choice: draw_if(scene.picker.has_choice(), LIGHT_CHOICE),
-                place: sampler.get_2d(key, dimension + LIGHT_PLACE),
+                // Numbers that decide nothing are not drawn.
+                choice: if scene.picker.has_choice() { numbers.one(LIGHT_CHOICE) } else { 0.0 },
+                place: numbers.two(LIGHT_PLACE),
             };
             let weighting = Weighting::Against { lights: 1, bsdfs: 1 };
-            if let Some(light) = sample_light(scene, at, bsdf, wo, numbers, weighting, ray.time) {
+            let light = sample_light(scene, at, bsdf, wo, numbers, weighting, ray.time);
+            if let Some(light) = light.filter(|light| sees_open(light.ray.direction)) {
                 let contribution = segment.throughput * light.contribution;
                 watch.hear(|| light.event(contribution));
                 state.shadow_rays.push(light.ray);
@@ -181,9 +228,8 @@ impl Path {
                 watch.hear(|| Event::Unlit);
             }
         }
-        let lobe = draw_if(bsdf.has_choice(), LOBE);
-        let direction = sampler.get_2d(key, dimension + DIRECTION);
-        let Some(drawn) = bsdf.sample(wo, lobe, direction, TransportMode::Radiance) else {
+        let lobe = if bsdf.has_choice() { numbers.one(LOBE) } else { 0.0 };
+        let Some(drawn) = bsdf.sample(wo, lobe, numbers.two(DIRECTION), TransportMode::Radiance) else {
             watch.hear(|| Event::Absorb);
             return;
         };
@@ -194,26 +240,61 @@ impl Path {
             is_delta: drawn.flags.delta,
             is_transmission: drawn.flags.transmission,
         });
-        let mut throughput = segment.throughput * drawn.weight;
-        let eta = segment.eta * drawn.eta;
-        if depth + 1 >= self.rr_depth {
+        let mut next = Segment {
+            throughput: segment.throughput * drawn.weight,
+            reference: at.surface.p,
+            pdf_omega: if drawn.flags.delta || !sees_open(drawn.wi) {
+                f32::INFINITY
+            } else {
+                drawn.pdf_omega
+            },
+            eta: segment.eta * drawn.eta,
+            path: segment.path,
+            depth: depth + 1,
+            place: Self::place_after(state, &segment, &drawn, drawn.wi.dot(at.surface.frame.n) < 0.0),
+        };
+        let is_walking = walked.is_some() && next.place != Place::Outside;
+        if is_walking {
+            next.depth = depth;
+        }
+        if is_walking || depth + 1 >= self.rr_depth {
             // Refraction squeezes radiance, but a path that will leave the glass again is not weaker for it.
-            let survival = (throughput.max_element() * eta * eta).min(0.95);
-            let survives = sampler.get_1d(key, dimension + ROULETTE) < survival;
+            let survival = (next.throughput.max_element() * next.eta * next.eta).min(0.95);
+            let survives = numbers.one(ROULETTE) < survival;
             watch.hear(|| Event::Roulette { survival, survives });
             if !survives {
                 return;
             }
-            throughput = throughput / survival;
+            next.throughput = next.throughput / survival;
         }
-        state.next_rays.push(at.surface.spawn_ray(drawn.wi, ray.time));
-        state.next_segments.push(Segment {
-            throughput,
-            reference: at.surface.p,
-            pdf_omega: if drawn.flags.delta { f32::INFINITY } else { drawn.pdf_omega },
-            eta,
-            path: segment.path,
+        state.next_rays.push(match next.place {
+            Place::Outside => at.surface.spawn_ray(drawn.wi, ray.time),
+            Place::Inside { events } => {
+                let onward = at.surface.spawn_ray(walk::kept_inside(at, drawn.wi), ray.time);
+                let interior = &state.interiors[segment.path as usize];
+                // Numbers that no vertex draws: they lie beyond the events of any walk.
+                let mut rng = walk::numbers_of(start.key, next.depth, !events);
+                walk::flight(onward, interior, next.throughput, &mut rng)
+            }
         });
+        state.next_segments.push(next);
+    }
+
+    /// Where a path is after it was scattered at a surface.
+    fn place_after(state: &mut PathState, segment: &Segment, drawn: &BsdfSample, is_inward: bool) -> Place {
+        let path = segment.path as usize;
+        match (segment.place, drawn.flags.transmission, is_inward) {
+            (_, true, true) if let Some(interior) = drawn.interior => {
+                if state.interiors.len() <= path {
+                    state.interiors.resize(path + 1, Interior::CLEAR);
+                }
+                state.interiors[path] = state.bsdf.interior(interior);
+                Place::Inside { events: 0 }
+            }
+            (_, true, false) => Place::Outside,
+            (Place::Inside { events }, ..) => Place::Inside { events: events + 1 },
+            (Place::Outside, ..) => Place::Outside,
+        }
     }
 }
 
@@ -229,6 +310,8 @@ impl PathState {
                 pdf_omega: f32::INFINITY,
                 eta: 1.0,
                 path: i as u32,
+                depth: 0,
+                place: Place::Outside,
             });
         }
     }
@@ -261,14 +344,13 @@ impl Path {
     ) {
         let state = &mut batch.path;
         state.begin(starts);
-        let mut depth = 0;
-        while !state.rays.is_empty() && depth < self.max_depth {
+        while !state.rays.is_empty() && self.max_depth > 0 {
             state.hits.clear();
             state.hits.resize(state.rays.len(), SceneHit::NONE);
             scene.closest_hits(&state.rays, &mut state.hits);
             batch.rays += state.rays.len() as u64;
             for i in 0..state.rays.len() {
-                self.shade(scene, starts, radiance, state, i, depth, watch);
+                self.shade(scene, starts, radiance, state, i, watch);
             }
             batch.rays += state.shadow_rays.len() as u64;
             state.light(scene, radiance, watch);
@@ -276,7 +358,6 @@ impl Path {
             std::mem::swap(&mut state.segments, &mut state.next_segments);
             state.next_rays.clear();
             state.next_segments.clear();
-            depth += 1;
         }
     }
 }

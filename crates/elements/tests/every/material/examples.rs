@@ -258,6 +258,17 @@ pub(super) fn examples(world: &mut World) -> Vec<Example> {
         ("null", true, world.add(bsdf, "null", [])),
         ("filter", true, world.add(bsdf, "null", [("transmittance", rgb(0.7, 0.4, 0.2))])),
         ("bump", false, world.add(bsdf, "bump", [("texture", slope), ("bsdf", diffuse.clone())])),
+        ("smooth subsurface", true, world.add(bsdf, "subsurface", [])),
+        ("rough subsurface", true, {
+            world.add(bsdf, "subsurface", [("alpha", Float(0.3)), ("reflectance", rgb(0.8, 0.5, 0.3))])
+        }),
+        ("smooth subsurface with a diffuse exit", false, {
+            world.add(bsdf, "subsurface", [("exit", word("diffuse")), ("name", word("Skin1"))])
+        }),
+        ("rough subsurface with a diffuse exit", false, {
+            let exit = ("exit", word("diffuse"));
+            world.add(bsdf, "subsurface", [exit, ("alpha", Float(0.4)), ("int_ior", Float(1.5))])
+        }),
         ("bump from a picture", false, {
             world.add(bsdf, "bump", [("texture", picture), ("scale", Float(0.8)), ("bsdf", diffuse)])
         }),
