@@ -119,7 +119,7 @@ fn placed_bodies_are_as_white() {
         ("exit", Value::String("diffuse".into())),
     ]);
     let ball = b.add(Family::Shape, "sphere", params([("bsdf", white)]));
-    let group = params([("shapes", Value::Nodes(vec![ball].into()))]);
+    let group = params([("shapes", Value::Nodes(vec![ball]))]);
     let group = b.add(Family::Shape, "group", group);
     let place = Transform::translate(Vector3::new(30.0, -20.0, 5.0))
         * Transform::rotate(Vector3::new(1.0, 1.0, 0.3), 40.0)

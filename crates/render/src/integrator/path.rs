@@ -108,7 +108,6 @@ impl Path {
     }
 
     /// Adds what a segment found, and continues its path from there.
-    #[expect(clippy::too_many_arguments, reason = "the state of one path, and who watches it")]
     fn shade<W: Watch>(
         &self,
         scene: &Scene,
