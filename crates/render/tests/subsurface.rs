@@ -109,6 +109,51 @@ fn white_bodies_in_even_surroundings_are_invisible() {
     }
 }
 
+/// OpenPBR's bodies and cloudy glass lose nothing either, if they are white and smooth.
+#[test]
+fn white_open_pbr_in_even_surroundings_is_invisible() {
+    let body = params([("subsurface_weight", Float(1.0)), ("subsurface_color", Float(1.0))]);
+    let glass = params([
+        ("transmission_weight", Float(1.0)),
+        ("transmission_depth", Float(0.7)),
+        ("transmission_scatter", Float(0.9)),
+    ]);
+    let prism = params([("transmission_weight", Float(1.0)), ("transmission_dispersion_scale", Float(1.0))]);
+    for (list, spp) in [(body, 64), (glass, 64), (prism, 1024)] {
+        let mut b = Builder::new();
+        let list = list.with("specular_roughness", Float(0.0)).with("subsurface_radius", Float(0.3));
+        let white = b.add(Family::Bsdf, "open_pbr", list);
+        b.shape("sphere", params([("bsdf", Value::Node(white))]));
+        b.camera([1.0, 2.0, 4.0], [0.1, 0.2, 0.0], None);
+        for (c, mean) in b.render(spp).into_iter().enumerate() {
+            assert!(mean.is_near(1.0, 1e-3), "channel {c}: {mean:?}");
+        }
+    }
+}
+
+/// Light that crosses glass has the square of its colour after twice its depth.
+#[test]
+fn glass_absorbs_by_depth() {
+    let mut b = Builder::new();
+    let color = [0.5, 0.8, 0.1];
+    let glass = b.add(
+        Family::Bsdf,
+        "open_pbr",
+        params([
+            ("transmission_weight", Float(1.0)),
+            ("transmission_color", rgb(color)),
+            ("transmission_depth", Float(1.0)),
+            ("specular_roughness", Float(0.0)),
+            ("specular_ior", Float(1.0)),
+        ]),
+    );
+    b.shape("cube", params([("bsdf", Value::Node(glass))]));
+    b.camera([0.2, 0.1, 5.0], [0.2, 0.1, 0.0], None);
+    for (mean, c) in b.render(16).into_iter().zip(color) {
+        assert!(mean.is_near(f64::from(c * c), 1e-4), "{mean:?} for {c}");
+    }
+}
+
 /// The same body as an instance that is turned, stretched and moved.
 #[test]
 fn placed_bodies_are_as_white() {

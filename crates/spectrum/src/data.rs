@@ -203,6 +203,27 @@ mod tests {
         assert!(spectrum_names().iter().all(|name| named_spectrum(name).is_some()));
     }
 
+    /// The lists of Mitsuba 3.9 (its documentation and its package's data) and of pbrt-v4.
+    #[test]
+    fn both_formats_find_all_their_names() {
+        let metals = "a-C Ag Al AlAs AlAs_palik AlSb AlSb_palik Au Be Be_palik Cr CsI CsI_palik Cu Cu_palik Cu2O Cu2O_palik CuO \
+            CuO_palik d-C d-C_palik Hg Hg_palik HgTe HgTe_palik Ir Ir_palik K K_palik Li Li_palik MgO MgO_palik Mo Mo_palik \
+            Na_palik Nb Nb_palik Ni_palik Rh Rh_palik Se Se_palik Se-e Se-e_palik SiC SiC_palik SnTe SnTe_palik Ta Ta_palik Te \
+            Te_palik Te-e Te-e_palik ThF4 ThF4_palik TiC TiC_palik TiN TiN_palik TiO2 TiO2_palik TiO2-e TiO2-e_palik VC \
+            VC_palik V_palik VN VN_palik W";
+        assert!(metals.split_whitespace().all(|name| metal(name).is_some_and(|m| m.eta.eval(550.0) > 0.0)));
+        let substances = "vacuum, helium, hydrogen, air, carbon dioxide, water, acetone, ethanol, carbon tetrachloride, \
+            glycerol, benzene, silicone oil, bromine, water ice, fused quartz, pyrex, acrylic glass, polypropylene, bk7, \
+            sodium chloride, amber, pet, diamond";
+        assert!(substances.split(',').all(|name| dielectric_ior(name.trim()).is_some()));
+        let of_pbrt = "glass-BK7 glass-BAF10 glass-FK51A glass-LASF9 glass-F5 glass-F10 glass-F11 metal-Ag-eta metal-Ag-k \
+            metal-Al-eta metal-Al-k metal-Au-eta metal-Au-k metal-Cu-eta metal-Cu-k metal-CuZn-eta metal-CuZn-k \
+            metal-MgO-eta metal-MgO-k metal-TiO2-eta metal-TiO2-k stdillum-A stdillum-D50 stdillum-D65 stdillum-F1 \
+            stdillum-F2 stdillum-F3 stdillum-F4 stdillum-F5 stdillum-F6 stdillum-F7 stdillum-F8 stdillum-F9 stdillum-F10 \
+            stdillum-F11 stdillum-F12 illum-acesD60";
+        assert!(of_pbrt.split_whitespace().all(|name| named_spectrum(name).is_some()));
+    }
+
     #[test]
     fn substances_scatter() {
         assert_eq!(scattering_substances().count(), 47);

@@ -21,6 +21,8 @@ struct Placed {
     bump_alpha2: f32,
     /// What light meets that goes through it: a place in the list of interiors.
     interior: Option<u8>,
+    /// Whether its Dirac counts as a density of one beside the other lobes of a blend.
+    counts_dirac: bool,
 }
 
 /// The scattering at a point of a surface, in world space. The weights of its lobes sum to at most one.
@@ -99,7 +101,15 @@ impl Bsdf {
     pub fn push(&mut self, lobe: impl Into<Lobe>, weight: f32, frame: Frame, base_normal: Vector3) {
         if weight > 0.0 && !self.lobes.is_full() {
             let lobe = lobe.into();
-            self.lobes.push(Placed { lobe, weight, frame, base_normal, bump_alpha2: 0.0, interior: None });
+            self.lobes.push(Placed {
+                lobe,
+                weight,
+                frame,
+                base_normal,
+                bump_alpha2: 0.0,
+                interior: None,
+                counts_dirac: false,
+            });
         }
     }
 
@@ -144,6 +154,30 @@ impl Bsdf {
                 placed.bump_alpha2 = (0.125 * (1.0 - cos2) / cos2).clamp(0.0, 1.0);
             }
         }
+    }
+
+    /// Lets the Diracs of all lobes from the `first` on count as densities of one: see `blend`.
+    pub(super) fn count_diracs(&mut self, first: usize) {
+        for placed in &mut self.lobes[first..] {
+            placed.counts_dirac = true;
+        }
+    }
+
+    /// The value over the density of a Dirac sample that counts as a density, beside the other lobes of its blend.
+    fn with_dirac(
+        &self,
+        chosen: &Placed,
+        [wo, wi]: [Vector3; 2],
+        own_value: Spectrum,
+        own_density: f32,
+        mode: TransportMode,
+    ) -> Spectrum {
+        let (mut value, mut density) = (own_value, chosen.weight * own_density);
+        for other in self.lobes.iter().filter(|other| other.counts_dirac && !std::ptr::eq(*other, chosen)) {
+            value += other.eval_cos(wo, wi, mode);
+            density += other.weight * other.pdf_omega(wo, wi);
+        }
+        value / density
     }
 
     /// The names of all lobes, for people who look into a path.
@@ -219,7 +253,9 @@ impl Bsdf {
         let probability = chosen.weight / total;
         let own_pdf = drawn.pdf_omega * probability;
         let own_value = || drawn.value * (drawn.wi.z.abs() * chosen.weight * chosen.shadowing(wi));
-        let (weight, pdf_omega) = if drawn.flags.delta || self.lobes.len() == 1 {
+        let (weight, pdf_omega) = if drawn.flags.delta && chosen.counts_dirac {
+            (self.with_dirac(chosen, [wo, wi], own_value(), drawn.pdf_omega, mode) * total, own_pdf)
+        } else if drawn.flags.delta || self.lobes.len() == 1 {
             (own_value() / own_pdf, own_pdf)
         } else if self.is_estimate() {
             // Only the lobe's own value over its own density is right on average; the sum of densities still serves to

@@ -148,17 +148,29 @@ impl EnvironmentMap {
             mean: 0.0,
         };
         let (w, h) = (this.picture.width(), this.picture.height());
-        // Each cell's weight is the mean of the interpolated picture over it: [1 6 1] / 8 in both directions.
+        // Each cell's weight is the mean of the interpolated picture over it: along rows [1 6 1] / 8; across them by midpoints, for the
+        // rows of a latitude picture do not lie in the middles of the cells.
+        let along = |x: i64, y: i64| -> f32 {
+            [(-1, 0.125), (0, 0.75), (1, 0.125)]
+                .map(|(i, wx)| wx * luminance(this.texel(x + i, y)))
+                .iter()
+                .sum()
+        };
         let mut weights = vec![0.0; w * h];
         for y in 0..h {
             let stretch = mapping.stretch((y as f32 + 0.5) / h as f32);
+            let mut rows = [0.0_f32; 4];
+            let first = y as i64 - 1;
+            for step in [0.125_f32, 0.375, 0.625, 0.875] {
+                let row = this.row((y as f32 + step) / h as f32);
+                let below = ((row.floor() as i64 - first).max(0) as usize).min(2);
+                let fraction = row - row.floor();
+                rows[below] += 0.25 * (1.0 - fraction);
+                rows[below + 1] += 0.25 * fraction;
+            }
             for x in 0..w {
-                let mut sum = 0.0;
-                for (j, wy) in [(-1, 0.125), (0, 0.75), (1, 0.125)] {
-                    for (i, wx) in [(-1, 0.125), (0, 0.75), (1, 0.125)] {
-                        sum += wx * wy * luminance(this.texel(x as i64 + i, y as i64 + j));
-                    }
-                }
+                let parts = rows.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
+                let sum: f32 = parts.map(|(j, weight)| weight * along(x as i64, first + j as i64)).sum();
                 weights[y * w + x] = sum.max(0.0) * stretch;
             }
         }
@@ -174,12 +186,16 @@ impl EnvironmentMap {
         self.picture.rgb(x as usize, y.clamp(0, h - 1) as usize)
     }
 
+    /// The row of the picture at a height, counted from the middle of the first.
+    fn row(&self, v: f32) -> f32 {
+        let h = self.picture.height() as f32;
+        // The first and last rows of a latitude picture are at the poles themselves, as Mitsuba has it.
+        if self.mapping == Mapping::LatLong { v * (h - 1.0) } else { v * h - 0.5 }
+    }
+
     /// The interpolated picture.
     fn lookup(&self, uv: Point2) -> Spectrum {
-        let (w, h) = (self.picture.width() as f32, self.picture.height() as f32);
-        let x = uv.x * w - 0.5;
-        // The first and last rows of a latitude picture are at the poles themselves, as Mitsuba has it.
-        let y = if self.mapping == Mapping::LatLong { uv.y * (h - 1.0) } else { uv.y * h - 0.5 };
+        let (x, y) = (uv.x * self.picture.width() as f32 - 0.5, self.row(uv.y));
         let (x0, y0) = (x.floor(), y.floor());
         let (fx, fy) = (x - x0, y - y0);
         let texel = |i: i64, j: i64| Spectrum::from_rgb(self.texel(x0 as i64 + i, y0 as i64 + j));

@@ -1,6 +1,7 @@
 //! Materials: draws follow their density and value, no energy is made, light may walk either way.
 
 mod examples;
+mod table;
 
 use aureole_desc::{Family, Value};
 use aureole_elements::bsdf::{Bsdf, BsdfSample, MaterialContext, TransportMode};
@@ -9,7 +10,7 @@ use aureole_math::{Frame, Id, Pcg32, Point2, Point3, Vector3, spherical_directio
 use aureole_spectrum::Wavelengths;
 use aureole_testkit::{Chi2Config, chi2_sphere, furnace, worst_asymmetry};
 
-use crate::world::{World, word};
+use crate::world::{World, rgb, word};
 use examples::examples;
 
 use TransportMode::{Importance, Radiance};
@@ -202,6 +203,25 @@ fn compensation_gives_back_what_roughness_takes() {
             assert!((whole.value - 1.0).abs() < 0.015, "{label} at {theta}: {whole:?}");
             assert!(bare.value < whole.value + 5e-3, "{label} at {theta}: {bare:?}");
         }
+    }
+}
+
+/// Where a mirror's Dirac counts as a density of one, light is lost as in Mitsuba 3.9.1 (`scalar_rgb`), which gave these shares
+/// of even light for a mixture of grey and a perfect mirror seen from above. Five standard errors.
+#[test]
+fn counted_diracs_lose_what_mitsuba_loses() {
+    let mut world = World::default();
+    for (weight, expected) in [(0.25, 0.5644), (0.5, 0.6898), (0.75, 0.8387)] {
+        let a = world.add(Family::Bsdf, "diffuse", [("reflectance", rgb(0.5, 0.5, 0.5))]);
+        let b = world.add(Family::Bsdf, "conductor", [("material", word("none"))]);
+        let dirac = ("dirac", word("density_one"));
+        let node = world.add(Family::Bsdf, "blend", [("a", a), ("b", b), ("weight", Float(weight)), dirac]);
+        let material = world.material_of(&node);
+        let bsdf = bsdf_at(&world, material, UPRIGHT, Vector3::Z);
+        let mean = furnace(100_000, 5, |rng| {
+            draw(&bsdf, Vector3::Z, Radiance, rng).map(|s| s.weight.rgb()[0].into())
+        });
+        assert!((mean.value - expected).abs() < 5.0 * mean.standard_error + 1e-3, "{weight}: {mean:?}");
     }
 }
 

@@ -81,6 +81,7 @@ pub(super) fn translate<'a>(
         "blendbsdf" => {
             t.put_required(&mut scope, "a", Tag::Bsdf)?;
             t.put_required(&mut scope, "b", Tag::Bsdf)?;
+            scope.default("dirac", word("density_one"));
         }
         "bumpmap" | "normalmap" => {
             scope.rename("use_shadowing_function", "soften_terminator");

@@ -252,6 +252,9 @@ impl Path {
             depth: depth + 1,
             place: Self::place_after(state, &segment, &drawn, drawn.wi.dot(at.surface.frame.n) < 0.0),
         };
+        if next.throughput.is_black() {
+            return;
+        }
         let is_walking = walked.is_some() && next.place != Place::Outside;
         if is_walking {
             next.depth = depth;

@@ -5,9 +5,11 @@ use aureole_spectrum::Spectrum;
 use super::super::conductor::{Metal, Response};
 use super::super::dielectric::Glass;
 use super::super::microfacet::{Distribution, Microfacet};
+use super::super::subsurface::looks_like;
 use super::super::{
-    Bsdf, ConductorLobe, DielectricLobe, Film, GlossLobe, LobeOps, MaterialContext, NullLobe,
-    RoughConductorLobe, RoughDielectricLobe, RoughDiffuseLobe, SheenLobe, ThinDielectricLobe, fresnel,
+    Bsdf, ConductorLobe, DielectricLobe, DiffuseTransmissionLobe, Film, GlossLobe, Interior, Lobe, LobeOps,
+    MaterialContext, NullLobe, PrismLobe, RoughConductorLobe, RoughDielectricLobe, RoughDiffuseLobe,
+    SheenLobe, SubsurfaceLobe, ThinDielectricLobe, fresnel,
 };
 use super::{Finish, OpenPbr};
 use crate::TextureContext;
@@ -41,14 +43,68 @@ pub(super) fn evaluate(m: &OpenPbr, at: &MaterialContext<'_>, weight: f32, out: 
     let mut light = Light { weight: weight * opacity, tint: Spectrum::ONE };
     let cos = at.wo.dot(at.frame.n);
     if cos <= 0.0 {
-        // From inside, only glass is seen.
-        let glass = m.transmission.weight_at(&at.texture) * (1.0 - metalness(m, &at.texture));
-        light.weight *= glass;
-        return translucent(m, at, &light, roughness(m, &at.texture), out);
+        return from_inside(m, at, &light, out);
     }
     fuzz(m, at, &mut light, out);
     let coated = coat(m, at, cos, &mut light, out);
     base(m, at, cos, &light, coated, out);
+}
+
+/// What light meets that wants to leave: glass, or the boundary of a body that scatters. Who is in a body has been let in
+/// already, so its boundary is whole.
+fn from_inside(m: &OpenPbr, at: &MaterialContext<'_>, light: &Light, out: &mut Bsdf) {
+    let texture = &at.texture;
+    let (metal, glass, body) =
+        (metalness(m, texture), m.transmission.weight_at(texture), m.subsurface.weight_at(texture));
+    let roughness = roughness(m, texture);
+    let whole = |weight| Light { weight: light.weight * weight, tint: light.tint };
+    if metal < 1.0 && glass < 1.0 && body > 0.0 && !m.is_thin_walled {
+        if glass > 0.0 {
+            translucent(m, at, &whole(1.0), roughness, out);
+        } else {
+            scattering_body(m, at, &whole(1.0), roughness, out);
+        }
+    } else {
+        translucent(m, at, &whole(glass * (1.0 - metal)), roughness, out);
+        if m.is_thin_walled && body > 0.0 {
+            thin_body(m, at, &whole((1.0 - metal) * (1.0 - glass) * body), out);
+        }
+    }
+}
+
+/// A body that scatters inside, below the base's boundary.
+fn scattering_body(m: &OpenPbr, at: &MaterialContext<'_>, light: &Light, roughness: f32, out: &mut Bsdf) {
+    let (texture, Some(albedos)) = (&at.texture, &m.albedos) else { return };
+    let glass = Glass { transmittance: light.tint, ..surface(m, texture, light.tint) };
+    let (_, anisotropy) = finish(&m.specular_finish, texture);
+    let color = m.subsurface.color_at(texture);
+    let length = texture.spectrum(m.subsurface_radius) * texture.spectrum(m.subsurface_radius_scale);
+    let interior = looks_like(albedos, color, length, m.subsurface_g);
+    let lobe = SubsurfaceLobe { glass, surface: facets(roughness, anisotropy), returned: color };
+    out.push_boundary(lobe, interior, light.weight, at.frame, at.frame.n);
+}
+
+/// A sheet that scatters to both sides [specification, "Thin-walled": subsurface].
+fn thin_body(m: &OpenPbr, at: &MaterialContext<'_>, light: &Light, out: &mut Bsdf) {
+    let color = m.subsurface.color_at(&at.texture) * light.tint;
+    let share = |g: f32| color * (0.5 * (1.0 + g));
+    let lobe =
+        DiffuseTransmissionLobe { reflectance: share(-m.subsurface_g), transmittance: share(m.subsurface_g) };
+    out.push(lobe, light.weight, at.frame, at.frame.n);
+}
+
+/// What fills glass of some depth [specification, "Translucent base"].
+fn filling(m: &OpenPbr, at: &TextureContext<'_>) -> Option<Interior> {
+    if m.transmission_depth <= 0.0 || m.is_thin_walled {
+        return None;
+    }
+    let per_length = 1.0 / m.transmission_depth;
+    let extinction = m.transmission.color_at(at).map(|c| -c.max(1e-6).ln() * per_length);
+    let scattering = at.spectrum(m.transmission_scatter).max_zero() * per_length;
+    let absorption = extinction - scattering;
+    // No colour may absorb less than nothing: all are lifted by as much as the lowest lacks.
+    let lowest = absorption.rgb().into_iter().fold(0.0, f32::min);
+    Some(Interior::from_coefficients(absorption - Spectrum::splat(lowest), scattering, m.transmission_g))
 }
 
 fn metalness(m: &OpenPbr, at: &TextureContext<'_>) -> f32 {
@@ -139,7 +195,15 @@ fn base(m: &OpenPbr, at: &MaterialContext<'_>, cos: f32, light: &Light, coated: 
         translucent(m, at, &share((1.0 - metal) * glass), roughness, out);
     }
     if metal < 1.0 && glass < 1.0 {
-        opaque(m, at, cos, &share((1.0 - metal) * (1.0 - glass)), (roughness, coated), out);
+        let (body, opaque_share) = (m.subsurface.weight_at(texture), (1.0 - metal) * (1.0 - glass));
+        if body > 0.0 && m.is_thin_walled {
+            thin_body(m, at, &share(opaque_share * body), out);
+        } else if body > 0.0 {
+            scattering_body(m, at, &share(opaque_share * body), roughness, out);
+        }
+        if body < 1.0 {
+            opaque(m, at, cos, &share(opaque_share * (1.0 - body)), (roughness, coated), out);
+        }
     }
 }
 
@@ -161,7 +225,7 @@ fn surface(m: &OpenPbr, at: &TextureContext<'_>, tint: Spectrum) -> Glass {
     Glass {
         eta: modulated(m.specular_ior, m.specular.weight_at(at)),
         reflectance: tint * m.specular.color_at(at),
-        transmittance: tint * m.transmission.color_at(at),
+        transmittance: if m.transmission_depth > 0.0 { tint } else { tint * m.transmission.color_at(at) },
         film: film(m, at),
     }
 }
@@ -170,10 +234,17 @@ fn translucent(m: &OpenPbr, at: &MaterialContext<'_>, light: &Light, roughness: 
     let glass = surface(m, &at.texture, light.tint);
     let (_, anisotropy) = finish(&m.specular_finish, &at.texture);
     let (weight, frame, n) = (light.weight, at.frame, at.frame.n);
-    match facets(roughness, anisotropy) {
-        _ if m.is_thin_walled => out.push(ThinDielectricLobe { glass }, weight, frame, n),
-        Some(surface) => out.push(RoughDielectricLobe { glass, surface }, weight, frame, n),
-        None => out.push(DielectricLobe { glass }, weight, frame, n),
+    let lobe: Lobe = match facets(roughness, anisotropy) {
+        _ if m.is_thin_walled => ThinDielectricLobe { glass }.into(),
+        Some(surface) => RoughDielectricLobe { glass, surface }.into(),
+        None => match m.dispersion {
+            Some(spread) => PrismLobe { glass, spread }.into(),
+            None => DielectricLobe { glass }.into(),
+        },
+    };
+    match filling(m, &at.texture) {
+        Some(interior) => out.push_boundary(lobe, interior, weight, frame, n),
+        None => out.push(lobe, weight, frame, n),
     }
 }
 
@@ -195,8 +266,7 @@ fn opaque(
         Some(surface) => m.gloss.at(&surface, cos) * m.specular.weight_at(texture),
         None => fresnel::dielectric(cos, glass.eta).reflectance,
     };
-    let matte = m.base.color_at(texture) * m.base.weight_at(texture);
-    let color = matte.lerp(m.subsurface.color_at(texture), m.subsurface.weight_at(texture));
+    let color = m.base.color_at(texture) * m.base.weight_at(texture);
     let deepened = if coated > 0.0 { darkening(m, texture, cos, color, true) } else { Spectrum::ONE };
     let lobe = RoughDiffuseLobe {
         reflectance: color * deepened * light.tint,

@@ -12,7 +12,12 @@
 //! | `specular_roughness`, `specular_roughness_anisotropy` | texture | 0.3, 0 | of the base's surface |
 //! | `specular_ior` | float | 1.5 | index of the dielectric base |
 //! | `transmission_weight`, `transmission_color` | texture | 0, 1 | from matte to glass; the colour that passes |
-//! | `subsurface_weight`, `subsurface_color` | texture | 0, 0.8 | from matte to subsurface scattering |
+//! | `transmission_depth` | float | 0 | where white light has the colour that passes; 0: the surface itself is coloured |
+//! | `transmission_scatter`, `transmission_scatter_anisotropy` | texture, float | 0, 0 | of glass with a depth: cloudiness |
+//! | `transmission_dispersion_scale`, `transmission_dispersion_abbe_number` | float | 0, 20 | spread of the index over colours |
+//! | `subsurface_weight`, `subsurface_color` | texture | 0, 0.8 | from matte to a body that scatters, and the colour it is seen in |
+//! | `subsurface_radius`, `subsurface_radius_scale` | texture | 1, (1, 0.5, 0.25) | mean free path inside, and its colour |
+//! | `subsurface_scatter_anisotropy` | float | 0 | mean cosine of scattering inside |
 //! | `coat_weight`, `coat_color` | texture | 0, 1 | a clear coat, and the colour that it lets pass |
 //! | `coat_roughness`, `coat_roughness_anisotropy` | texture | 0, 0 | of the coat's surface |
 //! | `coat_ior`, `coat_darkening` | float, texture | 1.6, 1 | index of the coat; how far it deepens the base's colour |
@@ -22,20 +27,29 @@
 //! | `geometry_opacity` | texture | 1 | 0: a hole |
 //! | `geometry_thin_walled` | bool | false | glass is a pane without inside |
 //!
-//! *Limits.* Subsurface scattering is a matte reflection of its colour, and what a volume inside would do
-//! (`transmission_depth`, `transmission_scatter`, dispersion) is left out: the parameters are read, with a warning where
-//! they ask for something. Light of its own is a shape's (`emission`). Fuzz is [`sheen`](super::sheen)'s.
+//! Glass with a depth and bodies that scatter are filled (see [`Interior`](super::Interior)): light is absorbed on its way and walks at
+//! random; the shape should be closed. The boundary of a scattering body spreads light that leaves, as that of
+//! [`subsurface`](super::subsurface) with a `diffuse` exit, and its colour is what diffuse light shows of a flat body, with the
+//! boundary taken into account (the specification's own formula leaves it out). A thin-walled body scatters half of the
+//! light back and half through, by anisotropy.
+//!
+//! *Limits.* Dispersion has three wavelengths, one a colour, and smooth glass only. Light of its own is a shape's (`emission`),
+//! and the coat follows the base's normal: `emission_*` and `geometry_coat_normal` are read with a warning. Fuzz is
+//! [`sheen`](super::sheen)'s.
 //!
 //! # References
 //! [Andersson et al. 2024] "OpenPBR Surface Specification", version 1.1, Academy Software Foundation.
 
 mod layers;
 
+use std::sync::Arc;
+
 use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::Id;
-use aureole_spectrum::{Spectrum, SpectrumRole};
+use aureole_spectrum::{Spectrum, SpectrumRole, SpectrumSource};
 
 use super::directional::AlbedoTable;
+use super::half_space::Albedos;
 use super::{Bsdf, MaterialContext, MaterialOps};
 use crate::{Element, Resolver, Texture, TextureContext, float_texture, spectrum_texture};
 
@@ -73,7 +87,18 @@ pub struct OpenPbr {
     specular_finish: Finish,
     specular_ior: f32,
     transmission: Weighted,
+    /// Where the transmitted colour is reached; zero at the surface.
+    transmission_depth: f32,
+    transmission_scatter: Id<Texture>,
+    transmission_g: f32,
+    /// Indices of red, green and blue over the middle one.
+    dispersion: Option<[f32; 3]>,
     subsurface: Weighted,
+    subsurface_radius: Id<Texture>,
+    subsurface_radius_scale: Id<Texture>,
+    subsurface_g: f32,
+    /// What a scattering body gives back; none if no body scatters.
+    albedos: Option<Arc<Albedos>>,
     coat: Weighted,
     coat_finish: Finish,
     coat_ior: f32,
@@ -94,20 +119,8 @@ const fn doc(name: &'static str, ty: &'static str, default: &'static str, doc: &
     ParamDoc { name, ty, default, doc }
 }
 
-/// Parameters of volumes and light, that are read but not rendered.
-const UNUSED: [&str; 11] = [
-    "transmission_depth",
-    "transmission_scatter",
-    "transmission_scatter_anisotropy",
-    "transmission_dispersion_scale",
-    "transmission_dispersion_abbe_number",
-    "subsurface_radius",
-    "subsurface_radius_scale",
-    "subsurface_scatter_anisotropy",
-    "emission_luminance",
-    "emission_color",
-    "geometry_coat_normal",
-];
+/// Parameters that are read but not rendered.
+const UNUSED: [&str; 3] = ["emission_luminance", "emission_color", "geometry_coat_normal"];
 
 impl Element for OpenPbr {
     const SUMMARY: &'static str = "The OpenPBR surface, version 1.1: one material for nearly everything.";
@@ -123,8 +136,16 @@ impl Element for OpenPbr {
         doc("specular_ior", "float", "1.5", "index of the dielectric base"),
         doc("transmission_weight", "texture", "0", "from matte to glass"),
         doc("transmission_color", "texture", "1", "the colour that passes"),
+        doc("transmission_depth", "float", "0", "where light has that colour; 0: the surface is coloured"),
+        doc("transmission_scatter", "texture", "0", "cloudiness of glass with a depth"),
+        doc("transmission_scatter_anisotropy", "float", "0", "its mean cosine"),
+        doc("transmission_dispersion_scale", "float", "0", "how much of the spread of colours there is"),
+        doc("transmission_dispersion_abbe_number", "float", "20", "small numbers spread colours widely"),
         doc("subsurface_weight", "texture", "0", "from matte to subsurface scattering"),
-        doc("subsurface_color", "texture", "0.8", "its colour"),
+        doc("subsurface_color", "texture", "0.8", "the colour that it is seen in"),
+        doc("subsurface_radius", "texture", "1", "mean free path inside"),
+        doc("subsurface_radius_scale", "texture", "1, 0.5, 0.25", "factor on it by colour"),
+        doc("subsurface_scatter_anisotropy", "float", "0", "mean cosine of scattering inside"),
         doc("coat_weight", "texture", "0", "a clear coat"),
         doc("coat_color", "texture", "1", "the colour that it lets pass"),
         doc("coat_roughness", "texture", "0", "roughness of its surface"),
@@ -139,9 +160,6 @@ impl Element for OpenPbr {
         doc("thin_film_ior", "float", "1.4", "its index"),
         doc("geometry_opacity", "texture", "1", "0: a hole"),
         doc("geometry_thin_walled", "bool", "false", "glass is a pane without inside"),
-        doc("transmission_depth", "float", "0", "not rendered"),
-        doc("transmission_scatter", "spectrum", "0", "not rendered"),
-        doc("subsurface_radius", "float", "1", "not rendered"),
         doc("emission_luminance", "float", "0", "not rendered: light is a shape's"),
     ];
 
@@ -167,6 +185,17 @@ impl Element for OpenPbr {
         let (film_weight, film_thickness) =
             (float(params, "thin_film_weight", 0.0)?, float(params, "thin_film_thickness", 0.5)?);
         let opacity = float(params, "geometry_opacity", 1.0)?;
+        let subsurface_radius =
+            spectrum_texture(params, resolver, "subsurface_radius", 1.0, SpectrumRole::Unbounded)?;
+        let subsurface_radius_scale = match params.has("subsurface_radius_scale") {
+            true => {
+                spectrum_texture(params, resolver, "subsurface_radius_scale", 1.0, SpectrumRole::Unbounded)?
+            }
+            false => resolver.constant(&SpectrumSource::Rgb([1.0, 0.5, 0.25]), SpectrumRole::Unbounded),
+        };
+        let transmission_scatter =
+            spectrum_texture(params, resolver, "transmission_scatter", 0.0, SpectrumRole::Unbounded)?;
+        let has_subsurface = params.has("subsurface_weight");
         let mut weighted =
             |params: &mut Params, layer: &str, weight, color| -> Result<Weighted, SceneError> {
                 let (weight_name, color_name) = (format!("{layer}_weight"), format!("{layer}_color"));
@@ -180,7 +209,15 @@ impl Element for OpenPbr {
             base: weighted(params, "base", 1.0, 0.8)?,
             specular: weighted(params, "specular", 1.0, 1.0)?,
             transmission: weighted(params, "transmission", 0.0, 1.0)?,
+            transmission_depth: params.float_in("transmission_depth", 0.0, 0.0, 1e30)?,
+            transmission_scatter,
+            transmission_g: params.float_in("transmission_scatter_anisotropy", 0.0, -0.99, 0.99)?,
+            dispersion: dispersion(params, specular_ior)?,
             subsurface: weighted(params, "subsurface", 0.0, 0.8)?,
+            subsurface_radius,
+            subsurface_radius_scale,
+            subsurface_g: params.float_in("subsurface_scatter_anisotropy", 0.0, -0.99, 0.99)?,
+            albedos: has_subsurface.then(|| Arc::new(Albedos::new(specular_ior))),
             coat: weighted(params, "coat", 0.0, 1.0)?,
             fuzz: weighted(params, "fuzz", 0.0, 1.0)?,
             film_ior: params.float_in("thin_film_ior", 1.4, 1.0, 5.0)?,
@@ -200,6 +237,24 @@ impl Element for OpenPbr {
             coat_gloss: AlbedoTable::gloss(coat_ior),
         })
     }
+}
+
+/// The indices of red, green and blue over that of the yellow D line, by Cauchy's law and Abbe's number.
+///
+/// # Maths
+/// n(λ) = A + B / λ², where V = (n(D) - 1) / (n(F) - n(C)) gives B; red, green and blue are at 611, 549 and 464 nm, the centres of
+/// Rec. 709's primaries.
+fn dispersion(params: &mut Params, ior: f32) -> Result<Option<[f32; 3]>, SceneError> {
+    let scale = params.float_in("transmission_dispersion_scale", 0.0, 0.0, 1e3)?;
+    let abbe = params.float_in("transmission_dispersion_abbe_number", 20.0, 1e-3, 1e6)?;
+    if scale == 0.0 {
+        return Ok(None);
+    }
+    // Wavelengths of Fraunhofer's lines d, F and C in nanometres.
+    let [d, f, c] = [587.56_f32, 486.13, 656.27].map(|lambda| lambda.powi(-2));
+    let b = (ior - 1.0) * scale / (abbe * (f - c));
+    let index = |lambda: f32| (ior + b * (lambda.powi(-2) - d)).clamp(1.0, 5.0);
+    Ok(Some([611.0, 549.0, 464.0].map(|lambda| index(lambda) / ior)))
 }
 
 impl MaterialOps for OpenPbr {

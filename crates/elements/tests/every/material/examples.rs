@@ -212,6 +212,11 @@ pub(super) fn examples(world: &mut World) -> Vec<Example> {
                 [("alpha", Float(0.3)), ("film_thickness", Float(400.0)), ("film_ior", Float(1.8))],
             )
         }),
+        ("blend that counts Diracs", false, {
+            let mirror = world.add(bsdf, "conductor", [("material", word("Au"))]);
+            let [weight, dirac] = [("weight", Float(0.4)), ("dirac", word("density_one"))];
+            world.add(bsdf, "blend", [("a", diffuse.clone()), ("b", mirror), weight, dirac])
+        }),
         ("rough diffuse", true, {
             world.add(bsdf, "rough_diffuse", [("reflectance", rgb(0.9, 0.5, 0.2)), ("roughness", Float(0.7))])
         }),
@@ -236,6 +241,46 @@ pub(super) fn examples(world: &mut World) -> Vec<Example> {
                     ("fuzz_color", rgb(0.5, 0.6, 0.9)),
                     ("thin_film_weight", Float(0.5)),
                     ("geometry_opacity", Float(0.9)),
+                ],
+            )
+        }),
+        ("open_pbr body", false, {
+            world.add(
+                bsdf,
+                "open_pbr",
+                [("subsurface_weight", Float(1.0)), ("specular_roughness", Float(0.5))],
+            )
+        }),
+        ("open_pbr sheet", false, {
+            world.add(
+                bsdf,
+                "open_pbr",
+                [
+                    ("subsurface_weight", Float(0.8)),
+                    ("subsurface_scatter_anisotropy", Float(0.3)),
+                    ("geometry_thin_walled", Value::Bool(true)),
+                ],
+            )
+        }),
+        ("open_pbr cloudy glass", false, {
+            world.add(
+                bsdf,
+                "open_pbr",
+                [
+                    ("transmission_weight", Float(1.0)),
+                    ("transmission_depth", Float(0.5)),
+                    ("transmission_scatter", rgb(0.2, 0.3, 0.4)),
+                ],
+            )
+        }),
+        ("open_pbr prism", false, {
+            world.add(
+                bsdf,
+                "open_pbr",
+                [
+                    ("transmission_weight", Float(1.0)),
+                    ("specular_roughness", Float(0.0)),
+                    ("transmission_dispersion_scale", Float(1.0)),
                 ],
             )
         }),

@@ -43,7 +43,7 @@ fn materials() {
         ),
         (
             r#"<bsdf type="blendbsdf"><float name="weight" value="0.2"/><bsdf type="diffuse"/><bsdf type="null"/></bsdf>"#,
-            "blend(a=diffuse() b=null() weight=0.2)",
+            "blend(a=diffuse() b=null() dirac=density_one weight=0.2)",
         ),
         (
             r#"<bsdf type="bumpmap"><texture name="any" type="checkerboard"/><float name="scale" value="2"/><bsdf type="diffuse"/></bsdf>"#,
