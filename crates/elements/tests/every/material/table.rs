@@ -1,7 +1,5 @@
 //! What the tests found, as tables to print: `cargo test -p aureole-elements --test every -- --ignored --nocapture table`.
 
-#![expect(clippy::print_stdout, reason = "this is for people who ask for it")]
-
 use aureole_desc::{Family, Value};
 use aureole_math::spherical_direction;
 use aureole_testkit::{Chi2Config, chi2_sphere, furnace};
