@@ -4,7 +4,10 @@ use aureole_math::{Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
 use super::{
-    BaekPlasticLobe, ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, GlossLobe, HairLobe, LayeredLobe, MeasuredLobe, MerlLobe, NullLobe, PlasticLobe, PrincipledLobe, PrincipledThinLobe, PrismLobe, RoughConductorLobe, RoughDielectricLobe, RoughDiffuseLobe, RoughPlasticLobe, SheenLobe, SubsurfaceLobe, ThinDielectricLobe,
+    BaekPlasticLobe, ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, GlossLobe,
+    HairLobe, LayeredLobe, MeasuredLobe, MerlLobe, NullLobe, PlasticLobe, PrincipledLobe, PrincipledThinLobe,
+    PrismLobe, RoughConductorLobe, RoughDielectricLobe, RoughDiffuseLobe, RoughPlasticLobe, SheenLobe,
+    SubsurfaceLobe, ThinDielectricLobe,
 };
 
 /// What travels along a path: refraction squeezes radiance, but not importance.
