@@ -16,6 +16,28 @@ pub enum Structure {
     Hierarchy,
 }
 
+/// Children of a node of [`Structure::Hierarchy`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Width {
+    /// What was fastest where it was measured: eight.
+    #[default]
+    Auto,
+    /// Eight: a register of AVX2.
+    Eight,
+    /// Sixteen: a register of AVX-512. Slices of rays are walked one by one.
+    Sixteen,
+}
+
+/// What [`Structure::Hierarchy`] keeps in memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layout {
+    /// Whole planes, triangles ready for the test.
+    #[default]
+    Fast,
+    /// Planes of eight bits, and of triangles only their numbers: the meshes' own arrays are read. Nodes have eight children.
+    Compact,
+}
+
 /// How rays are tested against triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Accuracy {
@@ -47,6 +69,10 @@ pub struct Config {
     pub accuracy: Accuracy,
     /// The hierarchy's quality.
     pub quality: Quality,
+    /// The hierarchy's nodes.
+    pub width: Width,
+    /// The hierarchy's memory.
+    pub layout: Layout,
     /// The grid's layout.
     pub grid: GridConfig,
 }

@@ -3,10 +3,10 @@
 use aureole_math::{Bounds3, Ray};
 
 use crate::binary;
-use crate::bvh::{self, Below, BinaryNode, BinaryTree, Bvh8, Stats, VisitLeaf};
+use crate::bvh::{self, Below, BinaryNode, BinaryTree, Bvh, Bvh8, CompactNode, Node16, Stats, VisitLeaf};
 use crate::grid::Grid;
 use crate::simd::Simd;
-use crate::{Config, Structure};
+use crate::{Config, Layout, Structure, Width};
 
 /// A structure over things that its owner has packed in groups.
 #[derive(Clone, Debug)]
@@ -19,6 +19,8 @@ pub(crate) enum Index {
     Grid(Grid),
     Binary(BinaryTree),
     Wide(Bvh8),
+    Sixteen(Bvh<Node16>),
+    Compact(Bvh<CompactNode>),
 }
 
 /// A structure, and how its owner must pack things.
@@ -75,7 +77,12 @@ impl Index {
             }
             Structure::Hierarchy => {
                 let built = bvh::build(count, bounds, lanes, config);
-                Indexed { index: Self::Wide(built.bvh), order: built.order.to_vec(), groups: built.groups }
+                let index = match (config.layout, config.width) {
+                    (Layout::Compact, _) => Self::Compact(Bvh::compacted(&built.bvh)),
+                    (Layout::Fast, Width::Sixteen) => Self::Sixteen(Bvh::widened(&built.bvh)),
+                    (Layout::Fast, Width::Auto | Width::Eight) => Self::Wide(built.bvh),
+                };
+                Indexed { index, order: built.order.to_vec(), groups: built.groups }
             }
         }
     }
@@ -84,7 +91,9 @@ impl Index {
     #[inline(always)]
     pub(crate) fn walk<S: Simd, V: VisitLeaf>(&self, ray: &Ray, t_max: f32, visitor: &mut V) {
         match self {
-            Self::Wide(bvh) => bvh.walk::<S, V>(ray, t_max, visitor),
+            Self::Wide(bvh) => bvh.walk::<8, S, V>(ray, t_max, visitor),
+            Self::Sixteen(bvh) => bvh.walk::<16, S, V>(ray, t_max, visitor),
+            Self::Compact(bvh) => bvh.walk::<8, S, V>(ray, t_max, visitor),
             Self::List { groups, .. } => {
                 visitor.visit::<S>(0, *groups);
             }
@@ -100,6 +109,8 @@ impl Index {
             Self::Grid(grid) => grid.bounds(),
             Self::Binary(tree) => tree.nodes.first().map_or(Bounds3::EMPTY, |root| root.bounds),
             Self::Wide(bvh) => bvh.bounds(),
+            Self::Sixteen(bvh) => bvh.bounds(),
+            Self::Compact(bvh) => bvh.bounds(),
         }
     }
 
@@ -113,6 +124,8 @@ impl Index {
             }
             Self::Binary(tree) => tree.stats(),
             Self::Wide(bvh) => Stats { bytes: size_of_val(&bvh.nodes[..]), ..bvh.stats },
+            Self::Sixteen(bvh) => Stats { bytes: size_of_val(&bvh.nodes[..]), ..bvh.stats },
+            Self::Compact(bvh) => Stats { bytes: size_of_val(&bvh.nodes[..]), ..bvh.stats },
         }
     }
 }

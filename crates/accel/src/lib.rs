@@ -18,6 +18,7 @@
 
 mod big;
 mod binary;
+mod blocks;
 mod bvh;
 mod caller;
 mod config;
@@ -32,7 +33,7 @@ mod triangle;
 mod world;
 
 pub use bvh::Stats;
-pub use config::{Accuracy, Config, GridConfig, Quality, Structure};
+pub use config::{Accuracy, Config, GridConfig, Layout, Quality, Structure, Width};
 pub use error::AccelError;
 pub use hit::{Geometry, Hit, NO_INSTANCE, NoUserShapes, UserHit, UserShapes};
 pub use overlap::{ball_overlaps_box, triangle_overlaps_box};

@@ -215,7 +215,9 @@ impl<U: UserShapes, T: TriangleTest> VisitLeaf for NearestTriangle<'_, U, T> {
 
     #[inline(always)]
     fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf {
-        for block in &self.world.blocks[first..first + count] {
+        for i in first..first + count {
+            let mut made = None;
+            let block = self.world.blocks.get(i, &mut made);
             self.test_block::<S>(block);
         }
         Leaf::Continue(self.nearest.t)
@@ -236,7 +238,9 @@ impl<U: UserShapes, T: TriangleTest> VisitLeaf for AnyTriangle<'_, U, T> {
 
     #[inline(always)]
     fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf {
-        for block in &self.world.blocks[first..first + count] {
+        for i in first..first + count {
+            let mut made = None;
+            let block = self.world.blocks.get(i, &mut made);
             let hits = self.test.intersect::<S>(block, self.ray.t_max);
             if hits.mask == 0 {
                 continue;

@@ -3,14 +3,13 @@
 use std::sync::Arc;
 
 use aureole_math::{Bounds3, Point3, Ray, Transform};
-use rayon::prelude::*;
 
-use crate::big::Big;
+use crate::blocks::{Blocks, Meshes};
 use crate::bvh::Stats;
 use crate::index::{Index, Indexed};
 use crate::overlap::{ball_overlaps_box, triangle_overlaps_box};
-use crate::triangle::{Block, LANES};
-use crate::{AccelError, Accuracy, Config, Geometry, Hit, UserShapes, query};
+use crate::triangle::LANES;
+use crate::{AccelError, Accuracy, Config, Geometry, Hit, Layout, Structure, UserShapes, query};
 
 /// Something that is not a triangle.
 #[derive(Clone, Debug)]
@@ -26,7 +25,7 @@ pub struct World {
     pub(crate) tag: u32,
     bounds: Bounds3,
     pub(crate) triangles: Index,
-    pub(crate) blocks: Big<Block>,
+    pub(crate) blocks: Blocks,
     /// For each mesh, the number of its first triangle and its geometry.
     meshes: Vec<[u32; 2]>,
     pub(crate) object_index: Index,
@@ -44,7 +43,7 @@ impl World {
             tag,
             bounds: Bounds3::EMPTY,
             triangles: Index::List { bounds: Bounds3::EMPTY, groups: 0 },
-            blocks: Big::default(),
+            blocks: Blocks::default(),
             meshes: Vec::new(),
             object_index: Index::List { bounds: Bounds3::EMPTY, groups: 0 },
             objects: Vec::new(),
@@ -57,11 +56,13 @@ impl World {
 
     fn build_triangles(&mut self, geometries: &[Geometry], config: &Config) -> Result<(), AccelError> {
         let mut meshes = Vec::new();
+        let mut kept = Meshes::new(config.accuracy);
         let mut count = 0;
         for (g, geometry) in geometries.iter().enumerate() {
             let Geometry::Triangles { positions, indices } = geometry else { continue };
             check_mesh(g, positions, indices)?;
             self.meshes.push([count as u32, g as u32]);
+            kept.push(count as u32, positions, indices);
             meshes.push((positions, indices));
             count += indices.len();
             check_count(count)?;
@@ -75,11 +76,10 @@ impl World {
         let bounds = |id: u32| Bounds3::around(triangle(id).map(Point3::from));
         let overlaps = |id: u32, cell: &Bounds3| triangle_overlaps_box(triangle(id).map(Point3::from), cell);
         let Indexed { index, order, groups } = Index::build(count, bounds, overlaps, LANES, config);
-        self.blocks = Big::zeroed(groups.len());
-        self.blocks.par_iter_mut().zip(&groups).for_each(|(block, &[first, count])| {
-            let ids = &order[first as usize..(first + count) as usize];
-            *block = Block::new(config.accuracy, ids, triangle);
-        });
+        self.blocks = match (config.structure, config.layout) {
+            (Structure::Hierarchy, Layout::Compact) => Blocks::numbers(kept, &order, &groups),
+            _ => Blocks::ready(&kept, &order, &groups),
+        };
         self.bounds = self.bounds.union(index.bounds());
         self.triangles = index;
         Ok(())
@@ -149,7 +149,7 @@ impl World {
 
     /// Figures about the hierarchies of this level.
     pub fn stats(&self) -> Stats {
-        let bytes = size_of_val(&self.blocks[..]) + size_of_val(&self.objects[..]);
+        let bytes = self.blocks.bytes() + size_of_val(&self.objects[..]);
         let stats = self.triangles.stats().merged(self.object_index.stats());
         Stats { bytes: stats.bytes + bytes, ..stats }
     }

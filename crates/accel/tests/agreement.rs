@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use aureole_accel::{
-    AccelError, Accuracy, Config, Geometry, GridConfig, Hit, NoUserShapes, Quality, Structure, UserHit,
-    UserShapes, World,
+    AccelError, Accuracy, Config, Geometry, GridConfig, Hit, Layout, NoUserShapes, Quality, Structure,
+    UserHit, UserShapes, Width, World,
 };
 use aureole_math::{Bounds3, Pcg32, Point3, Ray, Transform, Vector3, warp};
 
@@ -61,20 +61,27 @@ impl UserShapes for Balls {
     }
 }
 
+/// Every structure but the list, every width, every layout.
+fn configs() -> Vec<Config> {
+    let of = |structure| Config { structure, ..Config::default() };
+    let mut configs = [Structure::Grid, Structure::Binary, Structure::Hierarchy].map(of).to_vec();
+    configs.extend([Width::Eight, Width::Sixteen].map(|width| Config { width, ..Config::default() }));
+    configs.push(Config { layout: Layout::Compact, ..Config::default() });
+    configs
+}
+
 fn agree<U: UserShapes>(geometries: &[Geometry], user: &U, n: usize) {
-    let build = |structure| {
-        World::build(geometries.to_vec(), 0, &Config { structure, ..Config::default() })
-            .expect("the geometry is sound")
-    };
-    let list = build(Structure::List);
-    let others = [Structure::Grid, Structure::Binary, Structure::Hierarchy].map(|kind| (kind, build(kind)));
+    let build =
+        |config: &Config| World::build(geometries.to_vec(), 0, config).expect("the geometry is sound");
+    let list = build(&Config { structure: Structure::List, ..Config::default() });
+    let others: Vec<_> = configs().into_iter().map(|config| (config, build(&config))).collect();
     let mut hits = 0;
     for ray in rays(n, 77) {
         let expected = list.closest_hit(&ray, user);
         assert_eq!(list.occluded(&ray, user), expected.is_some());
-        for (kind, world) in &others {
-            assert_eq!(world.closest_hit(&ray, user), expected, "{kind:?} {ray:?}");
-            assert_eq!(world.occluded(&ray, user), expected.is_some(), "{kind:?} {ray:?}");
+        for (config, world) in &others {
+            assert_eq!(world.closest_hit(&ray, user), expected, "{config:?} {ray:?}");
+            assert_eq!(world.occluded(&ray, user), expected.is_some(), "{config:?} {ray:?}");
         }
         hits += usize::from(expected.is_some());
     }
@@ -195,17 +202,19 @@ fn ties_across_leaves_go_to_the_smallest_number() {
 
 /// The hierarchy and the list agree on oblique rays from near and far.
 fn agree_somewhere(geometries: &[Geometry], seed: u64) {
-    let build = |structure| {
-        World::build(geometries.to_vec(), 0, &Config { structure, ..Config::default() })
-            .expect("finite triangles build")
-    };
-    let (list, tree) = (build(Structure::List), build(Structure::Hierarchy));
+    let build =
+        |config: &Config| World::build(geometries.to_vec(), 0, config).expect("finite triangles build");
+    let list = build(&Config { structure: Structure::List, ..Config::default() });
+    let trees: Vec<_> = configs().iter().map(build).collect();
     let mut rng = Pcg32::new(seed);
     for _ in 0..4000 {
         let direction = warp::square_to_uniform_sphere(rng.point2());
         let target = Point3::new(rng.next_f32(), rng.next_f32(), rng.next_f32());
         let ray = Ray::new(target - direction * (rng.next_f32() * 40.0), direction);
-        assert_eq!(tree.closest_hit(&ray, &NoUserShapes), list.closest_hit(&ray, &NoUserShapes), "{ray:?}");
+        let expected = list.closest_hit(&ray, &NoUserShapes);
+        for tree in &trees {
+            assert_eq!(tree.closest_hit(&ray, &NoUserShapes), expected, "{ray:?}");
+        }
     }
 }
 
@@ -258,12 +267,12 @@ fn packets_find_what_single_rays_find() {
 
 #[test]
 fn the_fast_test_finds_the_same_in_every_structure() {
-    let build = |structure| {
-        let config = Config { structure, accuracy: Accuracy::Fast, ..Config::default() };
+    let build = |config: Config| {
+        let config = Config { accuracy: Accuracy::Fast, ..config };
         World::build(vec![soup(3000, 0.1, 8)], 0, &config).expect("the geometry is sound")
     };
-    let list = build(Structure::List);
-    let others = [Structure::Grid, Structure::Binary, Structure::Hierarchy].map(build);
+    let list = build(Config { structure: Structure::List, ..Config::default() });
+    let others: Vec<_> = configs().into_iter().map(build).collect();
     for ray in rays(3000, 5) {
         let expected = list.closest_hit(&ray, &NoUserShapes);
         for world in &others {
@@ -290,4 +299,15 @@ fn qualities_and_overlap_tests_change_no_hit() {
             assert_eq!(hit, expected.closest_hit(&ray, &NoUserShapes), "{config:?}");
         }
     }
+}
+
+#[test]
+fn a_compact_layout_takes_less_memory() {
+    let bytes = |config: Config| {
+        let world = World::build(vec![soup(20_000, 0.02, 8)], 0, &config).expect("the geometry is sound");
+        world.stats().bytes
+    };
+    let (fast, compact) =
+        (bytes(Config::default()), bytes(Config { layout: Layout::Compact, ..Config::default() }));
+    assert!(compact * 4 < fast, "{compact} {fast}");
 }

@@ -3,6 +3,7 @@
 mod binned;
 mod build;
 mod collapse;
+mod compact;
 mod linear;
 mod node;
 mod packet;
@@ -10,10 +11,13 @@ mod reinsert;
 mod top_down;
 mod traverse;
 mod tree;
+mod wide;
 
 pub(crate) use build::{build, build_binary};
+pub(crate) use compact::CompactNode;
 pub use node::Stats;
-pub(crate) use node::{Bvh8, MAX_LEVELS};
+pub(crate) use node::{Bvh, Bvh8, MAX_LEVELS};
 pub(crate) use packet::{PACKET, Packet, VisitPacket};
 pub(crate) use traverse::{Leaf, TIE_SCALE, VisitLeaf};
 pub(crate) use tree::{Below, BinaryNode, BinaryTree};
+pub(crate) use wide::Node16;

@@ -3,6 +3,7 @@
 use aureole_math::{Bounds3, Point3};
 use bytemuck::{Pod, Zeroable};
 
+use super::wide::Wide;
 use crate::big::Big;
 
 /// Children per node.
@@ -54,23 +55,27 @@ impl Node {
 }
 
 /// A hierarchy over items that its owner keeps in leaf order.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Bvh8 {
-    pub nodes: Big<Node>,
+#[derive(Clone, Debug)]
+pub(crate) struct Bvh<N: Pod> {
+    pub nodes: Big<N>,
     pub stats: Stats,
 }
 
-impl Bvh8 {
+/// What builders make.
+pub(crate) type Bvh8 = Bvh<Node>;
+
+impl<N: Pod> Bvh<N> {
     /// The box around everything.
-    pub(crate) fn bounds(&self) -> Bounds3 {
+    pub(crate) fn bounds<const W: usize>(&self) -> Bounds3
+    where
+        N: Wide<W>,
+    {
         let Some(root) = self.nodes.first() else { return Bounds3::EMPTY };
-        let [x, y, z] = root.planes.map(|[low, high]| {
-            [
-                low.into_iter().fold(f32::INFINITY, f32::min),
-                high.into_iter().fold(f32::NEG_INFINITY, f32::max),
-            ]
-        });
-        Bounds3 { min: Point3::new(x[0], y[0], z[0]), max: Point3::new(x[1], y[1], z[1]) }
+        (0..W).filter(|&slot| root.child(slot) != LEAF).fold(Bounds3::EMPTY, |bounds, slot| {
+            let [min, max] =
+                [0, 1].map(|side| Point3::from([0, 1, 2].map(|axis| root.plane(axis, side, slot))));
+            bounds.union(Bounds3 { min, max })
+        })
     }
 }
 

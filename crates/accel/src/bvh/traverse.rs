@@ -2,27 +2,29 @@
 
 use arrayvec::ArrayVec;
 use aureole_math::{Ray, gamma};
+use bytemuck::Pod;
 use glam::{Vec3, Vec4};
 
 use crate::simd::{Floats, Mask, Simd, splat3};
 
-use super::node::{Bvh8, COUNT_BITS, LEAF, MAX_LEVELS, Node, WIDTH};
+use super::node::{Bvh, COUNT_BITS, LEAF, MAX_LEVELS};
+use super::wide::Wide;
 
-/// Children left for later, at most seven a level: where the ray enters the child in the upper half (the bits of a number
+/// Children left for later, at most fifteen a level: where the ray enters the child in the upper half (the bits of a number
 /// that is not negative, which sort like the number) and its reference in the lower.
-pub(super) type Stack = ArrayVec<u64, { (WIDTH - 1) * MAX_LEVELS + WIDTH }>;
+pub(super) type Stack = ArrayVec<u64, { 15 * MAX_LEVELS + 16 }>;
 
 /// A ray made ready for the box test: a plane at `p` is met at `p · inv - offset`, the near planes a little too early and
 /// the far ones a little too late, so that rounding loses nothing.
 #[derive(Clone, Copy)]
-pub(crate) struct TraversalRay<S: Simd> {
+pub(crate) struct TraversalRay<const W: usize, F: Floats<W>> {
     /// Which side of each axis's slabs is entered first.
     near: [usize; 3],
-    near_inv: [S::F8; 3],
-    near_offset: [S::F8; 3],
-    far_inv: [S::F8; 3],
-    far_offset: [S::F8; 3],
-    t_min: S::F8,
+    near_inv: [F; 3],
+    near_offset: [F; 3],
+    far_inv: [F; 3],
+    far_offset: [F; 3],
+    t_min: F,
 }
 
 /// The rounding of `p · inv - offset` relative to its result, of both planes together.
@@ -30,7 +32,7 @@ pub(super) const RELATIVE: f32 = 1.0 + 4.0 * gamma(2);
 /// The rounding of `o · inv` relative to it.
 pub(super) const ABSOLUTE: f32 = 2.0 * gamma(2);
 
-impl<S: Simd> TraversalRay<S> {
+impl<const W: usize, F: Floats<W>> TraversalRay<W, F> {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
         let [o, d] =
@@ -47,17 +49,17 @@ impl<S: Simd> TraversalRay<S> {
             near_offset: splat3(splat(offset + slack)),
             far_inv: splat3(splat(inv * RELATIVE)),
             far_offset: splat3(splat((offset - slack) * RELATIVE)),
-            t_min: S::F8::splat(ray.t_min),
+            t_min: F::splat(ray.t_min),
         }
     }
 
-    /// Where the ray enters each of the eight boxes, and a bit for each that it meets before `t_max`.
+    /// Where the ray enters each of a node's boxes, and a bit for each that it meets before `t_max`.
     #[inline(always)]
-    fn intersect(&self, node: &Node, t_max: f32) -> (S::F8, u32) {
-        let (mut enter, mut leave) = (self.t_min, S::F8::splat(t_max));
+    fn intersect<S: Simd>(&self, node: &impl Wide<W, Floats<S> = F>, t_max: f32) -> (F, u32) {
+        let (mut enter, mut leave) = (self.t_min, F::splat(t_max));
         for axis in 0..3 {
-            let near = S::F8::load(&node.planes[axis][self.near[axis]]);
-            let far = S::F8::load(&node.planes[axis][self.near[axis] ^ 1]);
+            let near = node.planes::<S>(axis, self.near[axis]);
+            let far = node.planes::<S>(axis, self.near[axis] ^ 1);
             // In this order, a NaN decides nothing.
             enter = near.mul_sub(self.near_inv[axis], self.near_offset[axis]).max(enter);
             leave = far.mul_sub(self.far_inv[axis], self.far_offset[axis]).min(leave);
@@ -87,26 +89,29 @@ pub(crate) trait VisitLeaf {
     fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf;
 }
 
-impl Bvh8 {
+impl<N: Pod> Bvh<N> {
     /// Visits the leaves that a ray may meet, nearest first, with their first item and number of items.
     #[inline(always)]
-    pub(crate) fn walk<S: Simd, V: VisitLeaf>(&self, ray: &Ray, t_max: f32, visitor: &mut V) {
+    pub(crate) fn walk<const W: usize, S: Simd, V: VisitLeaf>(&self, ray: &Ray, t_max: f32, visitor: &mut V)
+    where
+        N: Wide<W>,
+    {
         if self.nodes.is_empty() || t_max.is_nan() {
             return;
         }
-        let ray = TraversalRay::<S>::new(ray);
+        let ray = TraversalRay::<W, N::Floats<S>>::new(ray);
         let mut t_max = t_max * TIE_SCALE;
         let mut stack = Stack::new();
         let mut current = 0;
         loop {
             if current & LEAF == 0 {
                 let node = &self.nodes[current as usize];
-                let (enter, mask) = ray.intersect(node, t_max);
+                let (enter, mask) = ray.intersect::<S>(node, t_max);
                 if mask != 0 {
                     current = if V::ANY {
-                        descend_any::<S>(node, enter, mask, &mut stack)
+                        descend_any(node, enter.to_array(), mask, &mut stack)
                     } else {
-                        descend::<S>(node, enter, mask, &mut stack)
+                        descend(node, enter.to_array(), mask, &mut stack)
                     };
                     continue;
                 }
@@ -131,12 +136,11 @@ impl Bvh8 {
 
 /// The nearest child that the ray meets; the others go onto the stack, farthest first.
 #[inline(always)]
-fn descend<S: Simd>(node: &Node, enter: S::F8, mut mask: u32, stack: &mut Stack) -> u32 {
-    let enter = enter.to_array();
+fn descend<const W: usize>(node: &impl Wide<W>, enter: [f32; W], mut mask: u32, stack: &mut Stack) -> u32 {
     let mut next = || {
-        let i = mask.trailing_zeros() as usize % WIDTH;
+        let i = mask.trailing_zeros() as usize % W;
         mask &= mask - 1;
-        (u64::from(enter[i].to_bits()) << 32 | u64::from(node.children[i]), mask)
+        (u64::from(enter[i].to_bits()) << 32 | u64::from(node.child(i)), mask)
     };
     let (a, rest) = next();
     if rest == 0 {
@@ -169,12 +173,16 @@ fn descend<S: Simd>(node: &Node, enter: S::F8, mut mask: u32, stack: &mut Stack)
 
 /// The nearest child that the ray meets; the others go onto the stack as they come.
 #[inline(always)]
-fn descend_any<S: Simd>(node: &Node, enter: S::F8, mut mask: u32, stack: &mut Stack) -> u32 {
-    let enter = enter.to_array();
+fn descend_any<const W: usize>(
+    node: &impl Wide<W>,
+    enter: [f32; W],
+    mut mask: u32,
+    stack: &mut Stack,
+) -> u32 {
     let mut next = || {
-        let i = mask.trailing_zeros() as usize % WIDTH;
+        let i = mask.trailing_zeros() as usize % W;
         mask &= mask - 1;
-        (u64::from(enter[i].to_bits()) << 32 | u64::from(node.children[i]), mask)
+        (u64::from(enter[i].to_bits()) << 32 | u64::from(node.child(i)), mask)
     };
     let (mut nearest, mut rest) = next();
     while rest != 0 {

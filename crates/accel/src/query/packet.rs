@@ -202,12 +202,16 @@ impl<S: Simd, U: UserShapes, T: TriangleTest, const ANY: bool> VisitPacket<S> fo
 
     #[inline(always)]
     fn expect(&self, first: usize) {
-        S::prefetch(&self.world.blocks[first]);
+        if let Some(block) = self.world.blocks.peek(first) {
+            S::prefetch(block);
+        }
     }
 
     #[inline(always)]
     fn visit(&mut self, packet: &Packet<S>, first: usize, count: usize, active: u32, t_max: f32) {
-        for block in &self.world.blocks[first..first + count] {
+        for i in first..first + count {
+            let mut made = None;
+            let block = self.world.blocks.get(i, &mut made);
             self.test_block(packet, block, active, t_max);
         }
     }

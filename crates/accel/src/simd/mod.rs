@@ -20,6 +20,9 @@ pub(crate) trait Simd: Copy {
     /// Sixteen numbers.
     type F16: Floats<16>;
 
+    /// Small whole numbers.
+    fn numbers(bytes: &[u8; 8]) -> Self::F8;
+
     /// Four quads side by side.
     fn join(quads: [Self::F4; 4]) -> Self::F16;
     /// The quads of sixteen numbers.

@@ -14,6 +14,11 @@ impl Simd for Portable {
     type F16 = Lanes<16>;
 
     #[inline(always)]
+    fn numbers(bytes: &[u8; 8]) -> Lanes<8> {
+        Lanes(std::array::from_fn(|i| bytes[i].into()))
+    }
+
+    #[inline(always)]
     fn join(quads: [Lanes<4>; 4]) -> Lanes<16> {
         Lanes(std::array::from_fn(|i| quads[i / 4].0[i % 4]))
     }

@@ -84,6 +84,11 @@ impl Simd for Avx2 {
     type F16 = Pair;
 
     #[inline(always)]
+    fn numbers(bytes: &[u8; 8]) -> F8 {
+        numbers(bytes)
+    }
+
+    #[inline(always)]
     fn join([a, b, c, d]: [F4; 4]) -> Pair {
         // SAFETY: see `register`.
         unsafe { Pair(F8(_mm256_set_m128(b.0, a.0)), F8(_mm256_set_m128(d.0, c.0))) }
@@ -124,6 +129,11 @@ impl Simd for Avx512 {
     type F4 = F4;
     type F8 = F8;
     type F16 = F16;
+
+    #[inline(always)]
+    fn numbers(bytes: &[u8; 8]) -> F8 {
+        numbers(bytes)
+    }
 
     #[inline(always)]
     fn join([a, b, c, d]: [F4; 4]) -> F16 {
@@ -172,6 +182,12 @@ impl Simd for Avx512 {
     fn prefetch<T>(soon: &T) {
         prefetch(soon);
     }
+}
+
+#[inline(always)]
+fn numbers(bytes: &[u8; 8]) -> F8 {
+    // SAFETY: see `register`; eight bytes are read.
+    unsafe { F8(_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(bytes.as_ptr().cast())))) }
 }
 
 #[inline(always)]

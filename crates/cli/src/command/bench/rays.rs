@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use aureole::accel::{Accuracy, Config, Hit, NoUserShapes, Quality, Structure, World};
+use aureole::accel::{Accuracy, Config, Hit, Layout, NoUserShapes, Quality, Structure, Width, World};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
@@ -39,6 +39,12 @@ pub(crate) struct RaysArgs {
     /// How much time the build takes for how good a hierarchy
     #[arg(long, value_enum, default_value_t = BuildQuality::Medium)]
     pub quality: BuildQuality,
+    /// Children of a hierarchy's node
+    #[arg(long, value_enum, default_value_t = NodeWidth::Auto)]
+    pub width: NodeWidth,
+    /// What a hierarchy keeps in memory
+    #[arg(long, value_enum, default_value_t = NodeLayout::Fast)]
+    pub layout: NodeLayout,
     /// Time only the first of every N runs of 4096 rays
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
     pub every: u32,
@@ -64,6 +70,28 @@ pub(crate) enum Accel {
     Binary,
     /// A hierarchy of boxes, eight in a box
     Hierarchy,
+}
+
+/// Children of a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum NodeWidth {
+    /// What was faster where it was measured
+    Auto,
+    /// Eight
+    #[value(name = "8")]
+    Eight,
+    /// Sixteen
+    #[value(name = "16")]
+    Sixteen,
+}
+
+/// Speed or memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum NodeLayout {
+    /// Everything ready for rays
+    Fast,
+    /// A fifth of the memory
+    Compact,
 }
 
 /// The triangle test.
@@ -101,14 +129,14 @@ pub(crate) fn run(args: &RaysArgs) -> Result<(), Failure> {
     let sets = read_rays(&args.rays, args.every as usize)?;
     for &accel in &args.accel {
         for &test in &args.test {
-            let config = config(accel, test, args.quality);
+            let config = config(accel, test, args);
             let start = Instant::now();
             let world = World::build(vec![mesh.clone()], 0, &config)
                 .map_err(|error| Failure::new(Exit::Scene, format!("`{}`: {error}", args.mesh.display())))?;
             let build_seconds = start.elapsed().as_secs_f64();
             for &mode in &args.mode {
                 let tracer = Tracer { world: &world, mode };
-                let name = name(accel, test, mode);
+                let name = name(accel, test, mode, args);
                 match &args.dump {
                     Some(prefix) => dump(&tracer, &sets, prefix, &name)?,
                     None => report(args, &tracer, &sets, &name, build_seconds)?,
@@ -119,7 +147,7 @@ pub(crate) fn run(args: &RaysArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn config(accel: Accel, test: Test, quality: BuildQuality) -> Config {
+fn config(accel: Accel, test: Test, args: &RaysArgs) -> Config {
     Config {
         structure: match accel {
             Accel::List => Structure::List,
@@ -131,22 +159,37 @@ fn config(accel: Accel, test: Test, quality: BuildQuality) -> Config {
             Test::Fast => Accuracy::Fast,
             Test::Watertight => Accuracy::Watertight,
         },
-        quality: match quality {
+        quality: match args.quality {
             BuildQuality::Fast => Quality::Fast,
             BuildQuality::Medium => Quality::Medium,
             BuildQuality::High => Quality::High,
+        },
+        width: match args.width {
+            NodeWidth::Auto => Width::Auto,
+            NodeWidth::Eight => Width::Eight,
+            NodeWidth::Sixteen => Width::Sixteen,
+        },
+        layout: match args.layout {
+            NodeLayout::Fast => Layout::Fast,
+            NodeLayout::Compact => Layout::Compact,
         },
         ..Config::default()
     }
 }
 
-fn name(accel: Accel, test: Test, mode: Mode) -> String {
+fn name(accel: Accel, test: Test, mode: Mode, args: &RaysArgs) -> String {
     let of = |value: &dyn Fn() -> Option<clap::builder::PossibleValue>| {
         value().map_or_else(String::new, |value| value.get_name().to_owned())
     };
     let mut name = format!("aureole-{}", of(&|| test.to_possible_value()));
     if accel != Accel::Hierarchy {
         let _ = write!(name, "-{}", of(&|| accel.to_possible_value()));
+    }
+    if args.width != NodeWidth::Auto {
+        let _ = write!(name, "-wide{}", of(&|| args.width.to_possible_value()));
+    }
+    if args.layout != NodeLayout::Fast {
+        let _ = write!(name, "-{}", of(&|| args.layout.to_possible_value()));
     }
     if mode != Mode::Single {
         let _ = write!(name, "-{}", of(&|| mode.to_possible_value()));
