@@ -8,7 +8,7 @@ use std::marker::PhantomData;
 
 use aureole_math::Ray;
 
-use crate::bvh::{Leaf, PACKET, VisitLeaf};
+use crate::bvh::{Leaf, VisitLeaf};
 use crate::caller::Caller;
 use crate::simd::{self, Floats, Kernel, Simd, lanes};
 use crate::triangle::{Block, Fast, LANES, TriangleTest, Watertight};
@@ -86,7 +86,7 @@ impl<U: UserShapes, T: TriangleTest> Kernel for Closest<'_, U, T> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let Self(world, rays, hits, user, _) = self;
-        for (rays, hits) in rays.chunks(PACKET).zip(hits.chunks_mut(PACKET)) {
+        for (rays, hits) in rays.chunks(packet::GROUP).zip(hits.chunks_mut(packet::GROUP)) {
             packet::closest_of::<S, T, U>(world, rays, hits, user);
         }
     }
@@ -99,7 +99,7 @@ impl<U: UserShapes, T: TriangleTest> Kernel for Occluded<'_, U, T> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let Self(world, rays, blocked, user, _) = self;
-        for (rays, blocked) in rays.chunks(PACKET).zip(blocked.chunks_mut(PACKET)) {
+        for (rays, blocked) in rays.chunks(packet::GROUP).zip(blocked.chunks_mut(packet::GROUP)) {
             packet::any_of::<S, T, U>(world, rays, blocked, user);
         }
     }
@@ -113,33 +113,53 @@ fn closest<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, us
         world.triangles.walk::<S, _>(ray, ray.t_max, &mut among);
         best = among.best();
     }
-    if world.objects.is_empty() { best } else { closest_after_objects::<S, U>(world, ray, best, user) }
-}
-
-/// The nearest of a hit and those with everything else.
-#[inline(always)]
-fn closest_after_objects<S: Simd, U: UserShapes>(world: &World, ray: &Ray, best: Hit, user: &U) -> Hit {
-    let t = if best.is_some() { best.t } else { ray.t_max };
-    let mut among = NearestObject { world, user, ray, best: Hit { t, ..best } };
-    world.object_index.walk::<S, _>(ray, t, &mut among);
-    if among.best.is_some() { among.best } else { Hit::NONE }
+    if world.objects.is_empty() { best } else { closest_after_objects(world, ray, best, user) }
 }
 
 #[inline(always)]
 fn any<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
-    let mut triangle = AnyTriangle { world, user, ray, test: T::new(ray), blocked: false };
-    world.triangles.walk::<S, _>(ray, ray.t_max, &mut triangle);
-    triangle.blocked || any_object::<S, U>(world, ray, user)
+    let mut among = AnyTriangle { world, user, ray, test: T::new(ray), blocked: false };
+    world.triangles.walk::<S, _>(ray, ray.t_max, &mut among);
+    among.blocked || any_object(world, ray, user)
 }
 
-#[inline(always)]
-fn any_object<S: Simd, U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
-    if world.objects.is_empty() {
-        return false;
+/// The nearest of a hit and those with everything else. Like what else may be called more than once, compiled apart: the
+/// code for all structures is long.
+#[inline(never)]
+fn closest_after_objects<U: UserShapes>(world: &World, ray: &Ray, best: Hit, user: &U) -> Hit {
+    simd::run(ClosestAfter(world, ray, best, user))
+}
+
+struct ClosestAfter<'a, U>(&'a World, &'a Ray, Hit, &'a U);
+
+impl<U: UserShapes> Kernel for ClosestAfter<'_, U> {
+    type Output = Hit;
+    #[inline(always)]
+    fn run<S: Simd>(self) -> Hit {
+        let Self(world, ray, best, user) = self;
+        let t = if best.is_some() { best.t } else { ray.t_max };
+        let mut among = NearestObject { world, user, ray, best: Hit { t, ..best } };
+        world.object_index.walk::<S, _>(ray, t, &mut among);
+        if among.best.is_some() { among.best } else { Hit::NONE }
     }
-    let mut object = AnyObject { world, user, ray, blocked: false };
-    world.object_index.walk::<S, _>(ray, ray.t_max, &mut object);
-    object.blocked
+}
+
+#[inline]
+fn any_object<U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
+    !world.objects.is_empty() && simd::run(AnyOther(world, ray, user))
+}
+
+struct AnyOther<'a, U>(&'a World, &'a Ray, &'a U);
+
+impl<U: UserShapes> Kernel for AnyOther<'_, U> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<S: Simd>(self) -> bool {
+        let Self(world, ray, user) = self;
+        let mut object = AnyObject { world, user, ray, blocked: false };
+        world.object_index.walk::<S, _>(ray, ray.t_max, &mut object);
+        object.blocked
+    }
 }
 
 /// A hit with a triangle, by its number in the level.

@@ -17,7 +17,7 @@ pub(crate) use build::{build, build_binary};
 pub(crate) use compact::CompactNode;
 pub use node::Stats;
 pub(crate) use node::{Bvh, Bvh8, MAX_LEVELS};
-pub(crate) use packet::{PACKET, Packet, VisitPacket};
+pub(crate) use packet::{Outline, PACKET, Packet, VisitPacket};
 pub(crate) use traverse::{Leaf, TIE_SCALE, VisitLeaf};
 pub(crate) use tree::{Below, BinaryNode, BinaryTree};
 pub(crate) use wide::Node16;

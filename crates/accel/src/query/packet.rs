@@ -1,15 +1,25 @@
 //! Sixteen rays of about one direction at once.
 
-use super::{Candidate, any, closest, closest_after_objects};
-use crate::bvh::{Bvh8, PACKET, Packet, VisitPacket};
+use std::marker::PhantomData;
+
+use aureole_math::Ray;
+
+use super::{Candidate, ClosestOne, OccludedOne, any_object, closest_after_objects};
+use crate::bvh::{Bvh8, Outline, PACKET, Packet, VisitPacket};
 use crate::index::Index;
-use crate::simd::{Floats, Mask, Simd, lanes};
+use crate::simd::{self, Floats, Mask, Simd, lanes};
 use crate::triangle::{Block, Hits, LANES, TriangleTest};
 
 use crate::{Hit, UserShapes, World};
-use aureole_math::Ray;
 
-/// The nearest hits of up to sixteen rays.
+/// Packets that are first looked at together.
+const PACKETS: usize = 4;
+/// Rays that are first looked at together.
+pub(super) const GROUP: usize = PACKETS * PACKET;
+/// Of sixteen rays that do not belong together, how many of about one direction are worth a packet.
+const WORTH_IT: u32 = 6;
+
+/// The nearest hits of up to [`GROUP`] rays.
 #[inline(always)]
 pub(super) fn closest_of<S: Simd, T: TriangleTest, U: UserShapes>(
     world: &World,
@@ -17,30 +27,53 @@ pub(super) fn closest_of<S: Simd, T: TriangleTest, U: UserShapes>(
     hits: &mut [Hit],
     user: &U,
 ) {
-    let Some((bvh, rays, packet)) = coherent::<S>(world, rays) else {
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = closest::<S, T, U>(world, ray, user);
-        }
+    if all_miss::<S>(world, rays) {
+        hits.fill(Hit::NONE);
+        closest_objects_of(world, rays, hits, user);
         return;
-    };
-    hits.fill(Hit::NONE);
-    if bvh.is_met_by(&packet) {
-        let mut search = Search::<U, T, false>::new(world, user, rays, &packet);
-        bvh.walk_packet(&packet, &mut search);
-        let hit = S::F16::load(&search.t).less(packet.t_max).bits();
-        for i in lanes(hit) {
-            let i = i % PACKET;
-            hits[i] = search.candidate(i).hit(world);
-        }
     }
-    if !world.objects.is_empty() {
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = closest_after_objects::<S, U>(world, ray, *hit, user);
+    for (rays, hits) in rays.chunks(PACKET).zip(hits.chunks_mut(PACKET)) {
+        let mut alone = u32::MAX;
+        let mut copies = None;
+        if let Some(together) = Together::<S>::new(world, rays, &mut copies) {
+            alone = together.alone;
+            hits.fill(Hit::NONE);
+            if together.bvh.is_met_by(&together.packet.outline) {
+                let packet = &together.packet;
+                let mut search = Search::<U, T, false>::new(world, user, together.rays, packet);
+                together.bvh.walk_packet(packet, &mut search);
+                let hit = S::F16::load(&search.t).less(packet.t_max).bits();
+                for i in lanes(hit) {
+                    let i = i % PACKET;
+                    hits[i] = search.candidate(i).hit(world);
+                }
+            }
+            if alone == 0 {
+                closest_objects_of(world, rays, hits, user);
+                continue;
+            }
+        }
+        for (i, (ray, hit)) in rays.iter().zip(hits).enumerate() {
+            if alone >> i & 1 == 1 {
+                *hit = simd::run(ClosestOne::<U, T>(world, ray, user, PhantomData));
+            } else if !world.objects.is_empty() {
+                *hit = closest_after_objects(world, ray, *hit, user);
+            }
         }
     }
 }
 
-/// Whether each of up to sixteen rays hits anything.
+/// The nearest of hits and those with everything else.
+#[inline(always)]
+fn closest_objects_of<U: UserShapes>(world: &World, rays: &[Ray], hits: &mut [Hit], user: &U) {
+    if !world.objects.is_empty() {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = closest_after_objects(world, ray, *hit, user);
+        }
+    }
+}
+
+/// Whether each of up to [`GROUP`] rays hits anything.
 #[inline(always)]
 pub(super) fn any_of<S: Simd, T: TriangleTest, U: UserShapes>(
     world: &World,
@@ -48,32 +81,72 @@ pub(super) fn any_of<S: Simd, T: TriangleTest, U: UserShapes>(
     blocked: &mut [bool],
     user: &U,
 ) {
-    let Some((bvh, rays, packet)) = coherent::<S>(world, rays) else {
+    if all_miss::<S>(world, rays) {
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = any::<S, T, U>(world, ray, user);
+            *blocked = any_object(world, ray, user);
         }
         return;
-    };
-    let mut bits = 0;
-    if bvh.is_met_by(&packet) {
-        let mut search = Search::<U, T, true>::new(world, user, rays, &packet);
-        bvh.walk_packet(&packet, &mut search);
-        bits = search.blocked;
     }
-    for (i, (ray, blocked)) in rays.iter().zip(blocked).enumerate() {
-        *blocked = bits >> i & 1 == 1 || super::any_object::<S, U>(world, ray, user);
+    for (rays, blocked) in rays.chunks(PACKET).zip(blocked.chunks_mut(PACKET)) {
+        let (mut alone, mut bits) = (u32::MAX, 0);
+        let mut copies = None;
+        if let Some(together) = Together::<S>::new(world, rays, &mut copies) {
+            alone = together.alone;
+            if together.bvh.is_met_by(&together.packet.outline) {
+                let mut search = Search::<U, T, true>::new(world, user, together.rays, &together.packet);
+                together.bvh.walk_packet(&together.packet, &mut search);
+                bits = search.blocked;
+            }
+        }
+        for (i, (ray, blocked)) in rays.iter().zip(blocked).enumerate() {
+            *blocked = if alone >> i & 1 == 1 {
+                simd::run(OccludedOne::<U, T>(world, ray, user, PhantomData))
+            } else {
+                bits >> i & 1 == 1 || any_object(world, ray, user)
+            };
+        }
     }
 }
 
-/// Rays of about one direction, and a hierarchy that can be walked with all of them.
+/// Whether it is plain at once that no ray of a group hits a triangle.
 #[inline(always)]
-fn coherent<'a, S: Simd>(
-    world: &'a World,
-    rays: &'a [Ray],
-) -> Option<(&'a Bvh8, &'a [Ray; PACKET], Packet<S>)> {
-    match (&world.triangles, <&[Ray; PACKET]>::try_from(rays)) {
-        (Index::Wide(bvh), Ok(rays)) => Some((bvh, rays, Packet::new(rays)?)),
-        _ => None,
+fn all_miss<S: Simd>(world: &World, rays: &[Ray]) -> bool {
+    let Index::Wide(bvh) = &world.triangles else { return false };
+    let (packets, rest) = rays.as_chunks::<PACKET>();
+    packets.len() > 1
+        && rest.is_empty()
+        && Outline::<S>::around(packets).is_some_and(|outline| !bvh.is_met_by(&outline))
+}
+
+/// Rays of about one direction, and a hierarchy that can be walked with all of them.
+struct Together<'a, S: Simd> {
+    bvh: &'a Bvh8,
+    rays: &'a [Ray; PACKET],
+    packet: Packet<S>,
+    /// A bit for each ray that has another direction: the first one stands in its place.
+    alone: u32,
+}
+
+impl<'a, S: Simd> Together<'a, S> {
+    /// `copies` is where the rays are put together, if some do not fit in.
+    #[inline(always)]
+    fn new(world: &'a World, rays: &'a [Ray], copies: &'a mut Option<[Ray; PACKET]>) -> Option<Self> {
+        let (Index::Wide(bvh), Ok(rays)) = (&world.triangles, <&[Ray; PACKET]>::try_from(rays)) else {
+            return None;
+        };
+        if let Some(packet) = Packet::new(rays) {
+            return Some(Self { bvh, rays, packet, alone: 0 });
+        }
+        let similar = Packet::<S>::similar_to_first(rays);
+        if similar.count_ones() < WORTH_IT {
+            return None;
+        }
+        let copies = copies.insert(*rays);
+        let alone = 0xffff & !similar;
+        for i in lanes(alone) {
+            copies[i % PACKET] = copies[0];
+        }
+        Some(Self { bvh, rays: copies, packet: Packet::new(copies)?, alone })
     }
 }
 
@@ -158,7 +231,7 @@ impl<'a, U: UserShapes, T: TriangleTest, const ANY: bool> Search<'a, U, T, ANY> 
         let boxes = T::boxes::<S>(block);
         // Unused lanes hold NaN.
         let used = S::F8::load(&boxes[0][0]).less_or_equal(S::F8::load(&boxes[0][1])).bits();
-        let met = packet.intersect(&boxes, t_max).1 & used;
+        let met = packet.outline.intersect(&boxes, t_max).1 & used;
         match &self.together {
             // One triangle against all rays, or one ray against all triangles: whatever are fewer.
             Some(_) if met.count_ones() <= active.count_ones() => {

@@ -24,10 +24,16 @@ fn same<T: TriangleTest>(world: &World, rays: &[Ray]) {
     simd::run(Closest::<_, T>(world, rays, &mut wide, &NoUserShapes, PhantomData));
     Closest::<_, T>(world, rays, &mut portable, &NoUserShapes, PhantomData).run::<Portable>();
     assert_eq!(wide, portable);
+    for (ray, hit) in rays.iter().zip(wide) {
+        assert_eq!(ClosestOne::<_, T>(world, ray, &NoUserShapes, PhantomData).run::<Portable>(), hit);
+    }
     let (mut wide, mut portable) = (vec![false; rays.len()], vec![false; rays.len()]);
     simd::run(Occluded::<_, T>(world, rays, &mut wide, &NoUserShapes, PhantomData));
     Occluded::<_, T>(world, rays, &mut portable, &NoUserShapes, PhantomData).run::<Portable>();
     assert_eq!(wide, portable);
+    for (ray, &blocked) in rays.iter().zip(&wide) {
+        assert_eq!(OccludedOne::<_, T>(world, ray, &NoUserShapes, PhantomData).run::<Portable>(), blocked);
+    }
     assert!(wide.iter().filter(|hit| **hit).count() > rays.len() / 20);
 }
 

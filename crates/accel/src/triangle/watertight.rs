@@ -64,7 +64,7 @@ impl TriangleTest for Watertight {
             (0, 0) => 0,
             _ => return None,
         };
-        let axes = AXES[largest][packet.near[largest]];
+        let axes = AXES[largest][packet.outline.near[largest]];
         let [dx, dy, dz] = [d[axes[0]], d[axes[1]], d[axes[2]]];
         let shear = [(dx / dz).to_array(), (dy / dz).to_array(), (S::F16::splat(1.0) / dz).to_array()];
         Some(WatertightRays { axes, shear })
