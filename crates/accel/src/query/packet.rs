@@ -9,7 +9,6 @@ use crate::bvh::{Bvh8, Outline, PACKET, Packet, VisitPacket};
 use crate::index::Index;
 use crate::simd::{self, Floats, Mask, Simd, lanes};
 use crate::triangle::{Block, Hits, LANES, TriangleTest};
-
 use crate::{Hit, UserShapes, World};
 
 /// Packets that are first looked at together.
