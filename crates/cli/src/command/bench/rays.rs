@@ -90,7 +90,7 @@ pub(crate) enum NodeWidth {
 pub(crate) enum NodeLayout {
     /// Everything ready for rays
     Fast,
-    /// A fifth of the memory
+    /// A seventh of the memory
     Compact,
 }
 
