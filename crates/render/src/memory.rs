@@ -10,7 +10,9 @@ use aureole_desc::{Family, Limits, Mesh, SceneDesc, Value};
 use aureole_image::{Probe, probe_image};
 use rustc_hash::FxHashSet;
 
+use crate::exact_sum::ExactSum;
 use crate::film::Film;
+use crate::integrator::channel_count;
 
 /// The program itself, its tables and the state of its workers.
 const BASE: u64 = 12 << 20;
@@ -67,6 +69,10 @@ impl MemoryEstimate {
                         estimate.shapes += bytes;
                         estimate.acceleration += ACCEL_TRIANGLE * triangles;
                         estimate.building += BUILD_TRIANGLE * triangles;
+                    }
+                    Value::String(list) if node.family == Family::Integrator && param.name == "layers" => {
+                        let layer = FILM_COPIES * size_of::<ExactSum>() as u64 + size_of::<f32>() as u64;
+                        estimate.film += pixels.saturating_mul(layer * channel_count(list));
                     }
                     Value::Floats(list) => estimate.description += 4 * list.len() as u64,
                     Value::Ints(list) => estimate.description += 4 * list.len() as u64,

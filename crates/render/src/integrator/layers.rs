@@ -36,6 +36,17 @@ pub(super) const MANUAL: IntegratorManual = IntegratorManual {
     build: |_| Ok(Box::new(Nothing)),
 };
 
+/// The most layers of an image. Each is a sum for every pixel.
+const MOST: u64 = 256;
+
+/// How many channels a list of layers makes; what is no layer makes none.
+pub(crate) fn channel_count(list: &str) -> u64 {
+    let words = list.split(',').filter_map(|pair| pair.rsplit_once(':'));
+    let channels =
+        words.filter_map(|(_, word)| Quantity::ALL.iter().find(|(known, ..)| *known == word.trim()));
+    channels.map(|(.., names)| names.len() as u64).sum()
+}
+
 /// No picture.
 struct Nothing;
 
@@ -129,6 +140,10 @@ impl Layer {
     pub(super) fn from_params(params: &mut Params) -> Result<Vec<Self>, SceneError> {
         let at = params.span("layers");
         let text = params.try_string("layers")?.unwrap_or_default();
+        let found = text.split(',').count() as u64;
+        if found > MOST {
+            return Err(SceneError::Limit { what: "layers of an image".into(), found, limit: MOST, at });
+        }
         let mut layers: Vec<Self> = Vec::new();
         for pair in text.split(',').map(str::trim).filter(|pair| !pair.is_empty()) {
             let (name, word) = pair.rsplit_once(':').ok_or_else(|| {
@@ -227,6 +242,14 @@ mod tests {
         };
         assert_eq!(channels("dd.y:depth, nn:sh_normal"), ["dd.y.T", "nn.X", "nn.Y", "nn.Z"]);
         assert!(channels("").is_empty());
+    }
+
+    #[test]
+    fn layers_are_counted_before_they_are_made() {
+        assert_eq!(channel_count("a:depth, b:position,c,d:heat"), 4);
+        let many: Vec<String> = (0..=MOST).map(|i| format!("a{i}:depth")).collect();
+        assert!(matches!(layers(&many.join(",")), Err(SceneError::Limit { found: 257, limit: 256, .. })));
+        assert!(layers(&many[1..].join(",")).is_ok());
     }
 
     #[test]

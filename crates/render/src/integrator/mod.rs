@@ -17,6 +17,7 @@ use aureole_scene::Scene;
 use aureole_spectrum::Spectrum;
 
 use crate::replay::Event;
+pub(crate) use layers::channel_count;
 use path::PathState;
 
 /// Dimensions below this one belong to the camera: film, lens, time.
