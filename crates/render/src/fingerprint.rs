@@ -203,12 +203,13 @@ impl Hash {
 
     fn mesh(&mut self, mesh: &Mesh) {
         // All fields by name: a new one must not be forgotten.
-        let Mesh { positions, indices, normals, uvs, attributes } = mesh;
+        let Mesh { positions, indices, normals, uvs, attributes, polygons } = mesh;
         for list in [positions, normals] {
             self.words(list.as_flattened().iter().map(|x| x.to_le_bytes()));
         }
         self.words(uvs.as_flattened().iter().map(|x| x.to_le_bytes()));
         self.words(indices.as_flattened().iter().map(|x| x.to_le_bytes()));
+        self.words(polygons.iter().map(|x| x.to_le_bytes()));
         for attribute in attributes {
             self.text(&format!("{} {:?} {}", attribute.name, attribute.domain, attribute.channels));
             self.words(attribute.data.iter().map(|x| x.to_le_bytes()));

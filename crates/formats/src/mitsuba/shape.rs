@@ -26,6 +26,7 @@ const KINDS: &[(&str, &str)] = &[
     ("instance", "instance"),
     ("merge", "merge"),
     ("sdfgrid", "sdf_grid"),
+    ("heightfield", "height_field"),
     ("bsplinecurve", "tube"),
     ("linearcurve", "tube"),
     ("ellipsoids", "ellipsoids"),
@@ -91,6 +92,7 @@ pub(super) fn translate<'a>(
         "sphere" => turn_if_mirrored(&mut scope)?,
         "sdf_grid" => sdf_grid(t, &mut scope)?,
         "tube" => tube(t, &mut scope)?,
+        "height_field" => height_field(t, &mut scope)?,
         "ellipsoids" if scope.has("filename") => t.put_path(&mut scope)?,
         _ => {}
     }
@@ -256,5 +258,30 @@ fn tube(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(), Sce
     scope.out.push("counts", Value::Ints(curves.counts), at);
     scope.out.push("basis", Value::String(basis.to_owned()), scope.span());
     scope.out.push("cull_back", Value::Bool(true), scope.span());
+    Ok(())
+}
+
+/// Heights from a picture's raw numbers, or from a texture inside.
+fn height_field<'a>(t: &mut Translator<'a, '_, '_>, scope: &mut Scope<'a>) -> Result<(), SceneError> {
+    if let Some(texture) = scope.take_child(&[Tag::Texture]) {
+        t.put(scope, "texture", texture)?;
+    } else {
+        let (path, at) = t.path(scope, "filename")?;
+        let params = Params::new()
+            .with("filename", Value::Path(path))
+            .with("encoding", Value::String("linear".to_owned()))
+            .with("wrap", Value::String("clamp".to_owned()));
+        let texture = t.scene.add(Node::new(Family::Texture, "bitmap", params, at));
+        scope.out.push("texture", Value::Node(texture), at);
+    }
+    if let (Some(width), Some(height)) = (scope.int("width")?, scope.int("height")?) {
+        let side = |n: i64| i32::try_from(n).unwrap_or(0);
+        scope.out.push("resolution", Value::Ints([side(width), side(height)].into()), scope.span());
+    }
+    let scale = [scope.float("height_scale")?, scope.float("scale")?].into_iter().flatten().next();
+    scope.out.push("height_scale", Value::Float(scale.unwrap_or(1.0)), scope.span());
+    if !scope.bool("shading_normals", true)? {
+        scope.out.push("face_normals", Value::Bool(true), scope.span());
+    }
     Ok(())
 }

@@ -2,7 +2,8 @@
 //!
 //! Faces may have any number of corners, in any of the forms `v`, `v/vt`, `v//vn`, `v/vt/vn`, counted from the start or
 //! (negative) from the end. Corners that agree in all three become one vertex. Curves, surfaces and smoothing groups are
-//! skipped.
+//! skipped. Colours behind positions (`v x y z r g b`) become the attribute `vertex_color`; faces of more than three corners are
+//! remembered for subdivision.
 //!
 //! # References
 //! Wavefront Technologies, "Advanced Visualizer Manual", appendices B1 (object files) and the MTL specification.

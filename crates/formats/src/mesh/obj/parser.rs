@@ -69,7 +69,7 @@ impl Parser {
     fn line(&mut self, line: &[u8]) -> Result<usize, String> {
         let (keyword, rest) = split_word(line);
         match keyword {
-            b"v" => self.pools.positions.push(numbers(rest)?),
+            b"v" => self.vertex(rest)?,
             b"vt" => self.pools.uvs.push(texture_coordinates(rest)?),
             b"vn" => self.pools.normals.push(numbers(rest)?),
             b"f" | b"fo" => {
@@ -89,6 +89,18 @@ impl Parser {
             _ => {}
         }
         Ok(0)
+    }
+
+    /// A position, and the colour that some programs write behind it.
+    fn vertex(&mut self, rest: &[u8]) -> Result<(), String> {
+        let pools = &mut self.pools;
+        pools.positions.push(numbers(rest)?);
+        let color = numbers::<6>(rest).ok().map(|[_, _, _, r, g, b]| [r, g, b]);
+        if color.is_some() || !pools.colors.is_empty() {
+            pools.colors.resize(pools.positions.len() - 1, [1.0; 3]);
+            pools.colors.push(color.unwrap_or([1.0; 3]));
+        }
+        Ok(())
     }
 
     fn start_part(&mut self, name: String, material: Option<String>) {

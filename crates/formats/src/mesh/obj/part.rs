@@ -1,6 +1,6 @@
 //! A mesh that grows corner by corner.
 
-use aureole_desc::Mesh;
+use aureole_desc::{Attribute, AttributeDomain, Mesh};
 use rustc_hash::FxHashMap;
 
 use crate::mesh::add_smooth_normals;
@@ -28,6 +28,8 @@ pub(super) struct Pools {
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) normals: Vec<[f32; 3]>,
+    /// One for each position, or none at all.
+    pub(super) colors: Vec<[f32; 3]>,
 }
 
 /// A part under construction.
@@ -37,7 +39,10 @@ pub(super) struct PartBuilder {
     pub(super) material: Option<String>,
     corners: Vec<Corner>,
     vertices: FxHashMap<Corner, u32>,
-    indices: Vec<[u32; 3]>,
+    /// The faces; its other arrays are filled in at the end.
+    mesh: Mesh,
+    /// Vertices of the face at work.
+    face: Vec<u32>,
 }
 
 impl PartBuilder {
@@ -46,23 +51,20 @@ impl PartBuilder {
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.indices.is_empty()
+        self.mesh.indices.is_empty()
     }
 
     pub(super) fn triangles(&self) -> usize {
-        self.indices.len()
+        self.mesh.indices.len()
     }
 
-    /// Adds a polygon as a fan.
+    /// Adds a polygon.
     pub(super) fn add_face(&mut self, face: &[Corner]) {
-        let [first, second, rest @ ..] = face else { return };
-        let first = self.vertex(*first);
-        let mut last = self.vertex(*second);
-        for &corner in rest {
-            let next = self.vertex(corner);
-            self.indices.push([first, last, next]);
-            last = next;
-        }
+        let mut vertices = std::mem::take(&mut self.face);
+        vertices.clear();
+        vertices.extend(face.iter().map(|&corner| self.vertex(corner)));
+        self.mesh.add_face(&vertices);
+        self.face = vertices;
     }
 
     fn vertex(&mut self, corner: Corner) -> u32 {
@@ -77,9 +79,13 @@ impl PartBuilder {
         let any = |field: usize| self.corners.iter().any(|corner| corner[field] != MISSING);
         let mut mesh = Mesh {
             positions: self.corners.iter().map(|corner| pools.positions[corner[0] as usize]).collect(),
-            indices: self.indices,
-            ..Mesh::default()
+            ..self.mesh
         };
+        if !pools.colors.is_empty() {
+            let data = gather(&self.corners, 0, &pools.colors).concat();
+            let (name, domain) = ("vertex_color".to_owned(), AttributeDomain::Vertex);
+            mesh.attributes.push(Attribute { name, domain, channels: 3, data });
+        }
         if any(1) {
             mesh.uvs = gather(&self.corners, 1, &pools.uvs);
         }

@@ -70,3 +70,14 @@ fn broken_files_never_panic() {
         }
     }
 }
+
+#[test]
+fn colours_behind_positions_are_an_attribute() {
+    let text = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0\nv 0 1 0 0 0 1\nf 1 2 3 4\n";
+    let file = parse(text, Split::Nothing).unwrap();
+    let mesh = &file.parts[0].mesh;
+    assert_eq!(mesh.polygons, [4]);
+    assert_eq!(mesh.attributes[0].name, "vertex_color");
+    assert_eq!(mesh.attributes[0].data, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0]);
+    assert!(parse(CORNERS, Split::Nothing).unwrap().parts[0].mesh.attributes.is_empty());
+}

@@ -156,8 +156,7 @@ fn read_faces(
             }
         }
         // A polygon becomes a fan; each of its triangles has the polygon's attributes.
-        for i in 2..corners.len() {
-            mesh.indices.push([corners[0], corners[i - 1], corners[i]]);
+        for _ in 0..mesh.add_face(&corners) {
             for (attribute, values) in layout.attributes.iter_mut().zip(&row) {
                 attribute.data.extend_from_slice(&values[..attribute.channels]);
             }
