@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use aureole_desc::{Node, NodeId, ParamDoc, Params, Report, SceneError, Span, Textured};
+use aureole_desc::{Limits, Node, NodeId, ParamDoc, Params, Report, SceneError, Span, Textured};
 use aureole_image::{Bitmap, Encoding};
-use aureole_math::Id;
+use aureole_math::{Arena, Id};
 use aureole_spectrum::{SpectrumRole, SpectrumSource};
 
 use crate::{Material, Shape, Texture};
@@ -88,6 +88,12 @@ pub trait Resolver {
 
     /// Where warnings go.
     fn report(&mut self) -> &mut Report;
+
+    /// What a scene may ask for.
+    fn limits(&self) -> &Limits;
+
+    /// The textures that are built so far, for shapes that are moved by one.
+    fn textures(&self) -> &Arena<Texture>;
 }
 
 /// Builds an element and warns about parameters that it did not ask for.
@@ -148,6 +154,8 @@ pub(crate) mod tests {
     #[derive(Default)]
     pub(crate) struct NoResolver {
         report: Report,
+        limits: Limits,
+        textures: Arena<Texture>,
     }
 
     impl Resolver for NoResolver {
@@ -171,6 +179,12 @@ pub(crate) mod tests {
         }
         fn report(&mut self) -> &mut Report {
             &mut self.report
+        }
+        fn limits(&self) -> &Limits {
+            &self.limits
+        }
+        fn textures(&self) -> &Arena<Texture> {
+            &self.textures
         }
     }
 }

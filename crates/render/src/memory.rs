@@ -6,8 +6,9 @@
 
 use std::path::Path;
 
-use aureole_desc::{Family, Limits, Mesh, SceneDesc, Value};
+use aureole_desc::{Family, Limits, Mesh, Params, SceneDesc, Value};
 use aureole_image::{Probe, probe_image};
+use aureole_math::{Point3, Transform};
 use rustc_hash::FxHashSet;
 
 use crate::exact_sum::ExactSum;
@@ -20,6 +21,9 @@ const BASE: u64 = 12 << 20;
 const ACCEL_TRIANGLE: u64 = 62;
 /// Further bytes of a triangle while it is built: boxes, order, the binary tree before it is widened (measured likewise).
 const BUILD_TRIANGLE: u64 = 60;
+/// Bytes of a triangle of a mesh that was divided: half a vertex with normal and texture coordinates, and indices. What the
+/// dividing needs is less than what the accelerator needs later.
+const REFINED_TRIANGLE: u64 = 16 + 12;
 /// Bytes of any other shape or instance, with its boxes.
 const OTHER_SHAPE: u64 = 1024;
 /// The film is kept in tiles, which overlap as far as filters reach (half as much again for a Gaussian), and copied where it
@@ -61,10 +65,15 @@ impl MemoryEstimate {
             for param in node.params.iter() {
                 match &param.value {
                     Value::Mesh(mesh) => {
-                        let bytes = mesh_bytes(mesh);
-                        let triangles = mesh.indices.len() as u64;
+                        let mut bytes = mesh_bytes(mesh);
+                        let mut triangles = mesh.indices.len() as u64;
                         if shared.insert(std::sync::Arc::as_ptr(mesh)) {
                             estimate.description += bytes;
+                        }
+                        if let Some(refined) = refined_triangles(mesh, &node.params) {
+                            let within = refined.min(limits.max_mesh_elements);
+                            bytes = within.saturating_mul(REFINED_TRIANGLE);
+                            triangles = within;
                         }
                         estimate.shapes += bytes;
                         estimate.acceleration += ACCEL_TRIANGLE * triangles;
@@ -82,7 +91,12 @@ impl MemoryEstimate {
                         let within =
                             |probe: &Probe| probe.width.saturating_mul(probe.height) <= limits.max_pixels;
                         let picture = probe_image(path).filter(within);
-                        estimate.textures += copies * picture.map_or(0, |probe| probe.bytes());
+                        estimate.textures += copies * picture.as_ref().map_or(0, Probe::bytes);
+                        if is_filtered(&node.params) {
+                            // The smaller versions are a third of the picture, in floats.
+                            let texels = picture.map_or(0, |probe| probe.width.saturating_mul(probe.height));
+                            estimate.textures += texels.saturating_mul(4 * 4) / 3;
+                        }
                     }
                     _ => {}
                 }
@@ -98,6 +112,55 @@ impl MemoryEstimate {
     }
 }
 
+/// Whether a picture is filtered by what a pixel covers.
+fn is_filtered(params: &Params) -> bool {
+    matches!(params.get("filter"), Some(Value::String(filter)) if filter == "trilinear" || filter == "ewa")
+}
+
+/// Triangles that a mesh is divided into before it is rendered, if it is: an estimate that is rather too high.
+fn refined_triangles(mesh: &Mesh, params: &Params) -> Option<u64> {
+    let levels = match params.get("levels") {
+        Some(Value::Int(levels)) => (*levels).clamp(0, 12) as u32,
+        _ => 3,
+    };
+    let divided = match params.get("subdivision") {
+        Some(Value::String(scheme)) if scheme != "none" => {
+            // Catmull and Clark's first level makes a quadrilateral of each corner.
+            let corners = |list: &[u32]| list.iter().map(|&n| u64::from(n)).sum::<u64>();
+            let faces = match scheme.as_str() {
+                "catmull_clark" if mesh.polygons.is_empty() => mesh.indices.len() as u64 * 3 / 2,
+                "catmull_clark" => corners(&mesh.polygons) / 2,
+                _ => mesh.indices.len() as u64,
+            };
+            Some(faces.saturating_mul(1 << (2 * levels)))
+        }
+        _ => None,
+    };
+    if params.get("displacement").is_none() {
+        return divided;
+    }
+    let edge = match params.get("edge_length") {
+        Some(Value::Float(x)) => *x as f32,
+        Some(Value::Int(x)) => *x as f32,
+        _ => 1.0,
+    };
+    let place = match params.get("world_from_object") {
+        Some(Value::Transform(place)) => *place,
+        _ => Transform::default(),
+    };
+    // Dividing longest edges leaves triangles of an eighth of the squared edge or more, a fifth on average, but for slivers.
+    let pieces = |t: &[u32; 3]| {
+        let at =
+            |i: u32| mesh.positions.get(i as usize).map_or(Point3::ORIGIN, |p| place.point(Point3::from(*p)));
+        let [a, b, c] = t.map(at);
+        let area = (b - a).cross(c - a).length() * 0.5;
+        let around = (b - a).length() + (c - b).length() + (a - c).length();
+        f64::from(1.0 + 6.0 * area / (edge * edge) + around / edge)
+    };
+    let displaced: f64 = mesh.indices.iter().map(pieces).sum();
+    Some(divided.unwrap_or(0).max(displaced as u64))
+}
+
 fn mesh_bytes(mesh: &Mesh) -> u64 {
     let attributes: usize = mesh.attributes.iter().map(|attribute| 4 * attribute.data.len()).sum();
     let vertices = 12 * (mesh.positions.len() + mesh.normals.len()) + 8 * mesh.uvs.len();
@@ -108,9 +171,31 @@ fn mesh_bytes(mesh: &Mesh) -> u64 {
 mod tests {
     use std::sync::Arc;
 
-    use aureole_desc::{Node, Params, Span};
+    use aureole_desc::{Node, Span};
 
     use super::*;
+
+    #[test]
+    fn refined_meshes_count_as_what_they_become() {
+        let mesh = Arc::new(Mesh {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+            indices: vec![[0, 1, 2], [0, 2, 3]],
+            polygons: vec![4],
+            ..Mesh::default()
+        });
+        let words = |scheme: &str| Params::new().with("subdivision", Value::String(scheme.to_owned()));
+        assert_eq!(refined_triangles(&mesh, &Params::new()), None);
+        assert_eq!(refined_triangles(&mesh, &words("none")), None);
+        assert_eq!(refined_triangles(&mesh, &words("loop")), Some(2 * 64));
+        assert_eq!(refined_triangles(&mesh, &words("catmull_clark")), Some(2 * 64));
+        let displaced = Params::new()
+            .with("displacement", Value::Float(0.1))
+            .with("edge_length", Value::Float(0.01))
+            .with("world_from_object", Value::Transform(Transform::scale(aureole_math::Vector3::splat(2.0))));
+        let count = refined_triangles(&mesh, &displaced).expect("is refined");
+        // Its area is 4; right-angled halves of an edge just below 0.01 are sixteen times 2^13.
+        assert!((200_000..400_000).contains(&count), "{count}");
+    }
 
     #[test]
     fn shared_meshes_are_described_once() {

@@ -172,4 +172,12 @@ impl Resolver for Resolve<'_> {
     fn report(&mut self) -> &mut Report {
         self.report
     }
+
+    fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    fn textures(&self) -> &Arena<Texture> {
+        &self.textures
+    }
 }

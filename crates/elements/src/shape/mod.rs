@@ -9,10 +9,12 @@ mod curve;
 mod custom;
 mod cylinder;
 mod disk;
+mod height_field;
 mod mesh;
 mod plane;
 mod quadric;
 mod rectangle;
+mod refine;
 mod sdf_grid;
 mod sphere;
 mod spline;
@@ -30,6 +32,7 @@ pub use curve::Curve;
 pub use custom::ShapeKind;
 pub use cylinder::Cylinder;
 pub use disk::Disk;
+pub use height_field::HeightField;
 pub use mesh::TriangleMesh;
 pub use plane::Plane;
 pub use rectangle::Rectangle;
@@ -98,15 +101,21 @@ pub trait ShapeOps: Debug + Send + Sync {
 
     /// The density with which [`sample_towards`](Self::sample_towards) draws the surface point seen along unit `wi`.
     fn pdf_towards(&self, reference: Point3, wi: Vector3, surface: &SurfacePoint) -> f32 {
-        let d2 = (surface.p - reference).length_squared();
-        let cos = wi.abs_dot(surface.ng);
-        if cos > 0.0 { d2 / (cos * self.area()) } else { 0.0 }
+        pdf_of_area(self.area(), reference, wi, surface)
     }
 
     /// Triangles, patches or parts.
     fn primitive_count(&self) -> usize {
         1
     }
+}
+
+/// The density per steradian of points that are drawn uniformly by area.
+#[inline]
+fn pdf_of_area(area: f32, reference: Point3, wi: Vector3, surface: &SurfacePoint) -> f32 {
+    let d2 = (surface.p - reference).length_squared();
+    let cos = wi.abs_dot(surface.ng);
+    if cos > 0.0 { d2 / (cos * area) } else { 0.0 }
 }
 
 registry! {
@@ -121,6 +130,7 @@ registry! {
     cube::Cube as Cube = "cube",
     cylinder::Cylinder as Cylinder = "cylinder",
     bilinear_mesh::BilinearMesh as BilinearMesh = "bilinear_mesh",
+    height_field::HeightField as HeightField = "height_field",
     sdf_grid::SdfGrid as SdfGrid = "sdf_grid",
     curve::Curve as Curve = "curve",
     tube::Tube as Tube = "tube",

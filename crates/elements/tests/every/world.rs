@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use aureole_desc::{Family, Node, NodeId, Params, Report, SceneDesc, SceneError, Span, Value};
+use aureole_desc::{Family, Limits, Node, NodeId, Params, Report, SceneDesc, SceneError, Span, Value};
 use aureole_elements::{FilmSpec, Light, Material, Resolver, Shape, Texture};
 use aureole_image::{Bitmap, Encoding};
 use aureole_math::{Arena, Id};
@@ -18,6 +18,7 @@ pub(crate) struct World {
     pub(crate) shapes: Arena<Shape>,
     emitting: Option<Id<Shape>>,
     report: Report,
+    limits: Limits,
     built: Vec<(Family, String)>,
 }
 
@@ -116,6 +117,14 @@ impl Resolver for World {
 
     fn report(&mut self) -> &mut Report {
         &mut self.report
+    }
+
+    fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    fn textures(&self) -> &Arena<Texture> {
+        &self.textures
     }
 }
 

@@ -3,7 +3,6 @@
 pub mod curves;
 pub(crate) mod error;
 pub mod ies;
-pub mod loop_subdivision;
 mod normals;
 pub mod obj;
 pub mod ply;

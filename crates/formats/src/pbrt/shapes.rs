@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 use super::curve;
 use super::params::ParamSet;
 use super::state::Reader;
-use crate::mesh::{loop_subdivision, ply};
+use crate::mesh::ply;
 
 const KINDS: &[&str] =
     &["bilinearmesh", "curve", "cylinder", "disk", "loopsubdiv", "plymesh", "sphere", "trianglemesh"];
@@ -62,7 +62,7 @@ impl Reader<'_, '_> {
         }
         if let Some(area_light) = self.state.area_light.clone() {
             if self.open_object.is_some() {
-                self.warn("shapes inside objects cannot shine yet", at);
+                self.warn("area lights in object definitions are ignored, as in pbrt", at);
             } else {
                 let emission = self.area_light(&area_light)?;
                 params.push("emission", Value::Node(emission), area_light.span);
@@ -124,12 +124,10 @@ impl Reader<'_, '_> {
             indices: triangles(&indices, given.at("indices"))?,
             ..Mesh::default()
         };
-        let levels = given.int("levels", 3)?;
-        let levels = u32::try_from(levels)
-            .map_err(|_| SceneError::invalid("`levels` must not be negative", given.at("levels")))?;
-        let mesh = loop_subdivision::subdivide(&control, levels, self.limits())
-            .map_err(|error| SceneError::invalid(error.to_string(), at))?;
-        params.push("mesh", Value::Mesh(Arc::new(mesh)), at);
+        control.check().map_err(|message| SceneError::invalid(message, at))?;
+        params.push("subdivision", Value::String("loop".into()), at);
+        params.push("levels", Value::Int(given.int("levels", 3)?), given.at("levels"));
+        params.push("mesh", Value::Mesh(Arc::new(control)), at);
         Ok("mesh")
     }
 
@@ -137,10 +135,10 @@ impl Reader<'_, '_> {
         let path = given
             .path("filename", self)?
             .ok_or_else(|| missing("plymesh", "filename", "a PLY file", given.span))?;
-        given.get("edgelength");
-        if let Some(displacement) = given.get("displacement") {
-            let at = displacement.span;
-            self.warn("displacement is not rendered yet: the mesh stays smooth", at);
+        let edge_length = given.float("edgelength", 1.0)?;
+        if let Some(displacement) = given.textured("displacement", self)? {
+            params.push("displacement", displacement, given.at("displacement"));
+            params.push("edge_length", Value::Float(edge_length), given.at("edgelength"));
         }
         // All files are read at the end, side by side; until then the path stands in for the mesh.
         params.push("mesh", Value::Path(path), given.at("filename"));

@@ -150,7 +150,8 @@ fn curves_and_subdivision_surfaces_are_read() {
     assert_eq!(points.len(), 12);
     assert_ne!(width("width0"), width("width1"));
     let Some(Value::Mesh(mesh)) = surface.params.get("mesh") else { panic!("{surface:?}") };
-    assert_eq!(mesh.indices.len(), 4);
+    assert_eq!(mesh.indices.len(), 1);
+    assert_eq!(surface.params.get("levels"), Some(&Value::Int(1)));
 }
 
 #[test]
