@@ -6,16 +6,17 @@
 //! | `two_sided` | bool | false | shine on the inner side as well |
 //! | `power` | float | 0 | if positive: scale to this power of the whole shape, W |
 //!
-//! It is given to a shape as `emission`.
+//! It is given to a shape as `emission`. A shape in a group shines in each instance of it.
 
 use std::f32::consts::PI;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use aureole_desc::{ParamDoc, Params, SceneError, Span};
-use aureole_math::{Bounds3, Id, Point2, Point3, Vector3, offset_ray_origin};
+use aureole_math::{Bounds3, Id, Point2, Point3, Transform, Vector3, offset_ray_origin};
 use aureole_spectrum::{Spectrum, SpectrumRole, luminance};
 
 use super::{LightContext, LightOps, LightSample};
+use crate::shape::ShapeSample;
 use crate::{Element, Resolver, Shape, SurfacePoint, Texture, TextureContext, spectrum_texture};
 
 /// A shining surface.
@@ -28,6 +29,62 @@ pub struct Area {
     power: f32,
     /// The factor that does it, once its shape and texture can be asked.
     scale: OnceLock<f32>,
+    /// Where the shape is, if it is in a group that an instance places.
+    place: Option<Arc<Place>>,
+}
+
+/// Where an instance puts a shape.
+#[derive(Debug)]
+struct Place {
+    world_from_group: Transform,
+    group_from_world: Transform,
+    /// |det| of the linear part.
+    volume_scale: f32,
+}
+
+impl Place {
+    fn new(world_from_group: Transform) -> Self {
+        let [x, y, z] = [Vector3::X, Vector3::Y, Vector3::Z].map(|axis| world_from_group.vector(axis));
+        let volume_scale = x.cross(y).dot(z).abs();
+        Self { world_from_group, group_from_world: world_from_group.inverse(), volume_scale }
+    }
+
+    /// By how much densities per steradian grow around unit `w` of the group: directions that are drawn apart there are drawn
+    /// together here, by |det M| / |M w|³.
+    fn density_scale(&self, w: Vector3) -> f32 {
+        let stretch = self.world_from_group.vector(w).length();
+        stretch * stretch * stretch / self.volume_scale
+    }
+
+    fn sample(&self, shape: &Shape, reference: Point3, u: Point2) -> Option<ShapeSample> {
+        let local = self.group_from_world.point(reference);
+        let drawn = shape.sample_towards(local, u)?;
+        let w = (drawn.p - local).try_normalized()?;
+        let pdf = drawn.pdf * self.density_scale(w);
+        Some(ShapeSample { pdf, ..drawn.transformed(&self.world_from_group) })
+    }
+
+    fn pdf_towards(&self, shape: &Shape, reference: Point3, wi: Vector3, surface: &SurfacePoint) -> f32 {
+        let Some(w) = self.group_from_world.vector(wi).try_normalized() else { return 0.0 };
+        let surface = surface.transformed(&self.group_from_world);
+        shape.pdf_towards(self.group_from_world.point(reference), w, &surface) * self.density_scale(w)
+    }
+
+    /// The shape's area in the world: the mean stretch of points that are drawn evenly.
+    fn area(&self, shape: &Shape) -> f32 {
+        const SIDE: usize = 16;
+        let (mut sum, mut count) = (0.0, 0.0);
+        for i in 0..SIDE * SIDE {
+            let grid = |i: usize| (i as f32 + 0.5) / SIDE as f32;
+            let Some(drawn) = shape.sample_area(Point2::new(grid(i % SIDE), grid(i / SIDE))) else {
+                continue;
+            };
+            let stretch = Vector3::from(self.world_from_group.normal(drawn.ng.into())).length();
+            sum += stretch * self.volume_scale / drawn.pdf;
+            count += 1.0;
+        }
+        if count > 0.0 { sum / count } else { 0.0 }
+    }
 }
 
 impl Element for Area {
@@ -54,6 +111,7 @@ impl Element for Area {
             two_sided: params.bool("two_sided", false)?,
             power: params.float("power", 0.0)?,
             scale: OnceLock::new(),
+            place: None,
         })
     }
 }
@@ -71,10 +129,17 @@ impl Area {
 }
 
 impl Area {
+    /// The same light on a shape of a group, in an instance of it.
+    pub(super) fn placed(&self, world_from_group: Transform) -> Self {
+        Self { scale: OnceLock::new(), place: Some(Arc::new(Place::new(world_from_group))), ..self.clone() }
+    }
+
     fn unscaled_power(&self, at: &LightContext<'_>) -> f32 {
         let sides = if self.two_sided { 2.0 } else { 1.0 };
         let mean = at.textures[self.radiance].mean(at.textures);
-        luminance(mean.rgb()) * at.shapes[self.shape].area() * PI * sides
+        let shape = &at.shapes[self.shape];
+        let area = self.place.as_ref().map_or_else(|| shape.area(), |place| place.area(shape));
+        luminance(mean.rgb()) * area * PI * sides
     }
 
     fn scale(&self, at: &LightContext<'_>) -> f32 {
@@ -85,7 +150,11 @@ impl Area {
 impl LightOps for Area {
     #[inline]
     fn sample(&self, at: &LightContext<'_>, reference: Point3, u: Point2) -> Option<LightSample> {
-        let drawn = at.shapes[self.shape].sample_towards(reference, u)?;
+        let shape = &at.shapes[self.shape];
+        let drawn = match &self.place {
+            None => shape.sample_towards(reference, u)?,
+            Some(place) => place.sample(shape, reference, u)?,
+        };
         let wi = (drawn.p - reference).try_normalized()?;
         let radiance = self.radiance(at, drawn.uv, -drawn.ng.dot(wi));
         let target = offset_ray_origin(drawn.p, drawn.error, drawn.ng, -wi);
@@ -106,7 +175,11 @@ impl LightOps for Area {
         wi: Vector3,
         surface: Option<&SurfacePoint>,
     ) -> f32 {
-        surface.map_or(0.0, |surface| at.shapes[self.shape].pdf_towards(reference, wi, surface))
+        let (Some(surface), shape) = (surface, &at.shapes[self.shape]) else { return 0.0 };
+        match &self.place {
+            None => shape.pdf_towards(reference, wi, surface),
+            Some(place) => place.pdf_towards(shape, reference, wi, surface),
+        }
     }
 
     #[inline]

@@ -13,7 +13,7 @@ mod sunsky;
 
 use std::fmt::Debug;
 
-use aureole_math::{Arena, Bounds3, Point2, Point3, Vector3};
+use aureole_math::{Arena, Bounds3, Point2, Point3, Transform, Vector3};
 use aureole_spectrum::{Spectrum, Wavelengths};
 
 use crate::{Shape, SurfacePoint, Texture};
@@ -136,6 +136,14 @@ impl Light {
     #[inline]
     pub fn environment(&self, at: &LightContext<'_>, reference: Point3, w: Vector3) -> Spectrum {
         each_light!(self, l => l.environment(at, reference, w))
+    }
+
+    /// The light of a shape in a group, in an instance of it. Only area lights have such a place.
+    pub fn placed(&self, world_from_group: &Transform) -> Self {
+        match self {
+            Self::Area(area) => area.placed(*world_from_group).into(),
+            other => other.clone(),
+        }
     }
 
     /// Whether rays that leave the scene see this light.

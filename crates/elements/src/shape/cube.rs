@@ -1,7 +1,7 @@
 //! `cube`: the cube [-1, 1]³, normals outwards, every side with uv from 0 to 1.
 
 use aureole_desc::{Mesh, ParamDoc, Params, SceneError};
-use aureole_math::{Bounds3, Point2, Ray, Transform};
+use aureole_math::{Bounds3, Point2, Point3, Ray, Transform, Vector3};
 
 use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint, TriangleMesh};
 use crate::{Element, Resolver};

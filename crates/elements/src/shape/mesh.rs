@@ -4,12 +4,18 @@
 //! |---|---|---|---|
 //! | `mesh` | mesh | | positions, indices, and optionally normals, texture coordinates and attributes |
 //! | `face_normals` | bool | false | ignore vertex normals |
+//! | `subdivision`, `levels`, `crease_edges`, `crease_sharpness` | | | divide the faces first: `loop` or `catmull_clark` |
+//! | `displacement`, `edge_length` | | | then move the surface by a texture |
+//!
+//! How meshes are refined: `refine/mod.rs`.
 
 use std::sync::Arc;
 
 use aureole_desc::{Attribute, Mesh, ParamDoc, Params, SceneError, Span};
+use aureole_math::warp::SphericalTriangle;
 use aureole_math::{Bounds3, Discrete, Frame, Normal3, Point2, Point3, Ray, Transform, Vector3, gamma, warp};
 
+use super::refine::Refinement;
 use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
 use crate::texture::MeshPoint;
 use crate::{Element, Resolver};
@@ -27,6 +33,15 @@ pub struct TriangleMesh {
     by_area: Option<Arc<Discrete>>,
     /// +1, or -1 when the geometric normals are turned round.
     orientation: f32,
+}
+
+/// Below this solid angle, drawing by area is as good, and above the other drawing by it loses digits.
+const MIN_SOLID_ANGLE: f32 = 0.01;
+const MAX_SOLID_ANGLE: f32 = 6.22;
+
+/// Whether something that covers a solid angle is drawn by it.
+pub(super) fn is_near(solid_angle: f32) -> bool {
+    (MIN_SOLID_ANGLE..MAX_SOLID_ANGLE).contains(&solid_angle)
 }
 
 impl TriangleMesh {
@@ -131,6 +146,53 @@ impl TriangleMesh {
         (p.to_point(), error, uv)
     }
 
+    /// A point of the first two triangles as of a parallelogram with corners 0, 1, 2, 0 + 2 - 1; its density is left open.
+    pub(super) fn sample_square(&self, at: Point2) -> ShapeSample {
+        let (triangle, b) = if at.x >= at.y {
+            (0, [1.0 - at.x, at.x - at.y, at.y])
+        } else {
+            (1, [at.x, at.y - at.x, 1.0 - at.y])
+        };
+        let (p, error, uv) = self.interpolate(triangle, b);
+        ShapeSample { p, error, ng: self.outward(triangle), uv, pdf: 0.0 }
+    }
+
+    /// The geometric normal of a triangle as a whole.
+    fn outward(&self, triangle: usize) -> Vector3 {
+        let ng = self.cross(triangle).normalized() * self.orientation;
+        if self.normals.is_empty() {
+            return ng;
+        }
+        let i = self.indices[triangle];
+        ng.face_forward(i.iter().fold(Vector3::ZERO, |sum, &i| sum + Vector3::from(self.normals[i as usize])))
+    }
+
+    /// The probability that a triangle is drawn.
+    fn probability(&self, triangle: usize) -> f32 {
+        self.by_area.as_ref().map_or(0.0, |by_area| by_area.pmf(triangle))
+    }
+
+    /// What a triangle covers around a point that is so near that it should be drawn by that.
+    #[inline]
+    fn seen_from(&self, reference: Point3, triangle: usize) -> Option<SphericalTriangle> {
+        let corners = self.triangle(triangle);
+        SphericalTriangle::new(reference, corners).filter(|seen| is_near(seen.solid_angle()))
+    }
+
+    /// Where the line from `reference` along `w` meets the plane of a triangle, moved into the triangle.
+    fn barycentric(&self, triangle: usize, reference: Point3, w: Vector3) -> Option<[f32; 3]> {
+        let [a, b, c] = self.triangle(triangle);
+        let (e1, e2, s) = (b - a, c - a, reference - a);
+        let p = w.cross(e2);
+        let below = p.dot(e1);
+        if below == 0.0 {
+            return None;
+        }
+        let b1 = (s.dot(p) / below).clamp(0.0, 1.0);
+        let b2 = (w.dot(s.cross(e1)) / below).clamp(0.0, 1.0 - b1);
+        Some([1.0 - b1 - b2, b1, b2])
+    }
+
     /// Derivatives of position by the texture coordinates [PBRT4, section 6.5.2].
     #[inline]
     fn derivatives(&self, primitive: usize, ng: Vector3) -> [Vector3; 2] {
@@ -164,9 +226,15 @@ impl Element for TriangleMesh {
             doc: "positions, indices, and optionally normals, uvs, attributes",
         },
         ParamDoc { name: "face_normals", ty: "bool", default: "false", doc: "ignore vertex normals" },
+        Refinement::SUBDIVISION,
+        Refinement::LEVELS,
+        Refinement::CREASE_EDGES,
+        Refinement::CREASE_SHARPNESS,
+        Refinement::DISPLACEMENT,
+        Refinement::EDGE_LENGTH,
     ];
 
-    fn from_params(params: &mut Params, _: &mut dyn Resolver) -> Result<Self, SceneError> {
+    fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
         let placement = Placement::from_params(params)?;
         let mesh = params.try_mesh("mesh")?.ok_or_else(|| SceneError::MissingParam {
             element: "mesh".into(),
@@ -174,6 +242,8 @@ impl Element for TriangleMesh {
             wanted: "a triangle mesh".into(),
             at: Span::NONE,
         })?;
+        let refinement = Refinement::from_params(params, resolver)?;
+        let mesh = refinement.apply(mesh, &placement.world_from_object, resolver)?;
         let shines = params.has("emission");
         let mut built = Self::new(&mesh, &placement.world_from_object, placement.flip_normals, shines)?;
         if params.bool("face_normals", false)? {
@@ -227,13 +297,25 @@ impl ShapeOps for TriangleMesh {
         let choice = self.by_area.as_ref()?.sample(u.x);
         let b = warp::square_to_triangle(Point2::new(choice.u, u.y));
         let (p, error, uv) = self.interpolate(choice.index, [1.0 - b.x - b.y, b.x, b.y]);
-        let mut ng = self.cross(choice.index).normalized() * self.orientation;
-        if !self.normals.is_empty() {
-            let i = self.indices[choice.index];
-            let sum = i.iter().fold(Vector3::ZERO, |sum, &i| sum + Vector3::from(self.normals[i as usize]));
-            ng = ng.face_forward(sum);
+        Some(ShapeSample { p, error, ng: self.outward(choice.index), uv, pdf: 1.0 / self.area })
+    }
+
+    fn sample_towards(&self, reference: Point3, u: Point2) -> Option<ShapeSample> {
+        let choice = self.by_area.as_ref()?.sample(u.x);
+        let seen = self.seen_from(reference, choice.index);
+        let Some(seen) = seen else { return self.sample_area(u)?.into_solid_angle(reference) };
+        let w = seen.sample(Point2::new(choice.u, u.y))?;
+        let (p, error, uv) = self.interpolate(choice.index, self.barycentric(choice.index, reference, w)?);
+        let pdf = self.probability(choice.index) / seen.solid_angle();
+        Some(ShapeSample { p, error, ng: self.outward(choice.index), uv, pdf })
+    }
+
+    fn pdf_towards(&self, reference: Point3, wi: Vector3, surface: &SurfacePoint) -> f32 {
+        let triangle = surface.primitive as usize;
+        match self.seen_from(reference, triangle) {
+            Some(seen) => self.probability(triangle) / seen.solid_angle(),
+            None => super::pdf_of_area(self.area, reference, wi, surface),
         }
-        Some(ShapeSample { p, error, ng, uv, pdf: 1.0 / self.area })
     }
 
     fn primitive_count(&self) -> usize {
@@ -262,6 +344,12 @@ macro_rules! delegate_to_mesh {
             }
             fn sample_area(&self, u: Point2) -> Option<ShapeSample> {
                 self.0.sample_area(u)
+            }
+            fn sample_towards(&self, reference: Point3, u: Point2) -> Option<ShapeSample> {
+                self.0.sample_towards(reference, u)
+            }
+            fn pdf_towards(&self, reference: Point3, wi: Vector3, surface: &SurfacePoint) -> f32 {
+                self.0.pdf_towards(reference, wi, surface)
             }
             fn primitive_count(&self) -> usize {
                 self.0.primitive_count()

@@ -52,23 +52,21 @@ impl SurfacePoint {
     /// The point in another space.
     pub fn transformed(&self, transform: &Transform) -> Self {
         let normal = |n: Vector3| Vector3::from(transform.normal(n.into())).normalized();
-        let p = transform.point(self.p);
-        // The error grows with the map's stretch, and the map itself rounds.
-        let stretch = |e: Vector3| {
-            let rows = transform.rows();
-            let row = |i: usize| (0..3).map(|j| rows[i][j].abs() as f32 * e[j]).sum::<f32>();
-            Vector3::new(row(0), row(1), row(2))
-        };
-        let rows = transform.rows();
-        let magnitude = |i: usize| {
-            (0..3).map(|j| (rows[i][j] as f32 * self.p[j]).abs()).sum::<f32>() + (rows[i][3] as f32).abs()
-        };
-        let rounding = Vector3::new(magnitude(0), magnitude(1), magnitude(2)) * gamma(4);
-        let error = stretch(self.error) * (1.0 + gamma(4)) + rounding;
+        let (p, error) = place(transform, self.p, self.error);
         let (dp_du, dp_dv) = (transform.vector(self.dp_du), transform.vector(self.dp_dv));
         let frame = Frame::from_normal_and_tangent(normal(self.frame.n), dp_du);
         Self { p, error, ng: normal(self.ng), frame, dp_du, dp_dv, ..*self }
     }
+}
+
+/// A point in another space, and its error: that grows with the map's stretch, and the map itself rounds.
+fn place(transform: &Transform, p: Point3, error: Vector3) -> (Point3, Vector3) {
+    let rows = transform.rows();
+    let stretch = |i: usize| (0..3).map(|j| rows[i][j].abs() as f32 * error[j]).sum::<f32>();
+    let magnitude =
+        |i: usize| (0..3).map(|j| (rows[i][j] as f32 * p[j]).abs()).sum::<f32>() + (rows[i][3] as f32).abs();
+    let row = |i: usize| stretch(i) * (1.0 + gamma(4)) + magnitude(i) * gamma(4);
+    (transform.point(p), Vector3::new(row(0), row(1), row(2)))
 }
 
 /// A point drawn from a surface.
@@ -87,6 +85,13 @@ pub struct ShapeSample {
 }
 
 impl ShapeSample {
+    /// The point in another space, its density left as it was.
+    pub fn transformed(&self, transform: &Transform) -> Self {
+        let (p, error) = place(transform, self.p, self.error);
+        let ng = Vector3::from(transform.normal(self.ng.into())).normalized();
+        Self { p, error, ng, ..*self }
+    }
+
     /// Converts a density per area into one per steradian at `reference`; `None` at grazing angles.
     #[inline]
     pub fn into_solid_angle(self, reference: Point3) -> Option<Self> {

@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use aureole_desc::{Family, Value};
 use aureole_elements::light::LightContext;
-use aureole_elements::{Light, Shape};
+use aureole_elements::{Light, Shape, SurfacePoint};
 use aureole_math::{Bounds3, Id, Pcg32, Point2, Point3, Ray, Transform, Vector3, warp};
 use aureole_spectrum::{Wavelengths, luminance};
 use aureole_testkit::{Chi2Config, chi2_sphere, mean_with_error, sidak, z_test, z_test_between};
@@ -21,6 +21,8 @@ struct Example {
     /// The shape that shines, if one does.
     shape: Option<Id<Shape>>,
     is_two_sided: bool,
+    /// Where the shape's group is.
+    place: Option<Transform>,
 }
 
 fn turned() -> Value {
@@ -119,6 +121,7 @@ fn examples(world: &mut World) -> Vec<Example> {
             light: world.light(kind, params, None),
             shape: None,
             is_two_sided: false,
+            place: None,
         })
         .collect();
 
@@ -137,13 +140,38 @@ fn examples(world: &mut World) -> Vec<Example> {
         let shape = Some(world.shape(kind, shape));
         for is_two_sided in [false, true] {
             let params = params([("radiance", glow.clone()), ("two_sided", Value::Bool(is_two_sided))]);
-            examples.push(Example { label, light: world.light("area", params, shape), shape, is_two_sided });
+            examples.push(Example {
+                label,
+                light: world.light("area", params, shape),
+                shape,
+                is_two_sided,
+                place: None,
+            });
         }
     }
+    // In groups, whose instances may stretch and mirror them.
+    let squeeze = Transform::translate(Vector3::new(0.2, 0.1, 0.4))
+        * Transform::rotate(Vector3::new(1.0, 2.0, 0.3), 35.0)
+        * Transform::scale(Vector3::new(0.8, -1.3, 0.6));
+    let placed: Vec<Example> = examples
+        .iter()
+        .filter_map(|example| {
+            let light = example.light.placed(&squeeze);
+            let is_placed = example.shape.is_some();
+            is_placed.then_some(Example { light, place: Some(squeeze), ..*example })
+        })
+        .collect();
     let bright = params([("radiance", glow), ("power", Float(5.0))]);
     let shape = examples.last().and_then(|example| example.shape);
     let light = world.light("area", bright, shape);
-    examples.push(Example { label: "shining tube of known power", light, shape, is_two_sided: false });
+    examples.push(Example {
+        label: "shining tube of known power",
+        light,
+        shape,
+        is_two_sided: false,
+        place: None,
+    });
+    examples.extend(placed);
     examples
 }
 
@@ -197,8 +225,7 @@ fn draws_carry_what_their_direction_sees() {
                         (light.environment(&at, reference, s.wi), light.pdf_omega(&at, reference, s.wi, None))
                     }
                     Some(id) => {
-                        let shape = &world.shapes[id];
-                        let points = all_hits(shape, ray).into_iter().map(|hit| shape.surface(&ray, &hit));
+                        let points = example.hits(&world.shapes[id], &ray).into_iter();
                         let target = s.target.expect("an area light has a place");
                         let nearest =
                             points.min_by(|a, b| (a.p - target).length().total_cmp(&(b.p - target).length()));
@@ -261,10 +288,12 @@ fn drawing_and_looking_agree() {
                 let radiance = match example.shape {
                     None => light.environment(&at, reference, wi),
                     Some(id) => {
-                        let Some(hit) = crate::shape::closest_hit(&world.shapes[id], &ray) else {
-                            return 0.0;
-                        };
-                        light.emitted(&at, &world.shapes[id].surface(&ray, &hit), -wi)
+                        let hits = example.hits(&world.shapes[id], &ray);
+                        let nearest = hits
+                            .into_iter()
+                            .min_by(|a, b| (a.p - reference).length().total_cmp(&(b.p - reference).length()));
+                        let Some(point) = nearest else { return 0.0 };
+                        light.emitted(&at, &point, -wi)
                     }
                 };
                 f64::from(luminance(radiance.rgb()) / warp::UNIFORM_SPHERE_PDF)
@@ -279,8 +308,16 @@ impl Example {
     /// Whether the light's own shape does not hide the point that was drawn.
     fn is_seen(&self, world: &World, reference: Point3, wi: Vector3, target: Option<Point3>) -> bool {
         let (Some(id), Some(target)) = (self.shape, target) else { return true };
-        let hit = crate::shape::closest_hit(&world.shapes[id], &Ray::new(reference, wi));
-        hit.is_none_or(|hit| hit.t > (target - reference).length() - 1e-3)
+        let hits = self.hits(&world.shapes[id], &Ray::new(reference, wi));
+        let distance = (target - reference).length() - 2e-3;
+        hits.iter().all(|hit| (hit.p - reference).length() > distance)
+    }
+
+    /// All hits of a ray with the shape, where it is.
+    fn hits(&self, shape: &Shape, ray: &Ray) -> Vec<SurfacePoint> {
+        let local = self.place.map_or(*ray, |place| place.inverse().ray(ray));
+        let surfaces = all_hits(shape, local).into_iter().map(|hit| shape.surface(&local, &hit));
+        surfaces.map(|s| self.place.map_or(s, |place| s.transformed(&place))).collect()
     }
 }
 

@@ -1,12 +1,14 @@
 //! Maps from the unit square to other domains, area-preserving or with a stated density.
 
 mod equal_area;
+mod spherical;
 
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_4, PI, TAU};
 
 use crate::{Point2, Vector3};
 
 pub use equal_area::{sphere_from_square_equal_area, square_from_sphere_equal_area};
+pub use spherical::{SphericalRectangle, SphericalTriangle};
 
 /// Uniform on the unit disk.
 ///
