@@ -1,5 +1,7 @@
 //! Images as textures read them: compact texels, decoded on the fly.
 
+use std::sync::OnceLock;
+
 use exr::prelude::f16;
 
 use crate::encoding::{ByteTable, Encoding, WordTable, byte_table, word_table};
@@ -25,6 +27,8 @@ pub struct Bitmap {
     channels: usize,
     non_finite: usize,
     store: Store,
+    /// Smaller versions, made when they are first asked for.
+    pyramid: OnceLock<Vec<Bitmap>>,
 }
 
 impl Bitmap {
@@ -63,7 +67,14 @@ impl Bitmap {
 
     /// One texel of one colour, to stand in for a picture that cannot be read.
     pub fn placeholder(rgb: [f32; 3]) -> Self {
-        Self { width: 1, height: 1, channels: 3, non_finite: 0, store: Store::Floats(rgb.to_vec()) }
+        Self {
+            width: 1,
+            height: 1,
+            channels: 3,
+            non_finite: 0,
+            store: Store::Floats(rgb.to_vec()),
+            pyramid: OnceLock::new(),
+        }
     }
 
     /// The picture among a file's channels.
@@ -102,7 +113,74 @@ impl Bitmap {
             }
             Texels::Floats(data) => Store::Floats(linear_floats(data, channels, encoding, &mut non_finite)),
         };
-        Some(Self { width, height, channels, non_finite, store })
+        Some(Self { width, height, channels, non_finite, store, pyramid: OnceLock::new() })
+    }
+
+    /// The picture and its smaller versions: each half as large, rounded down, as the last, down to a single texel. A texel is
+    /// the mean of the area that it covers, in linear numbers.
+    ///
+    /// `level` beyond the last gives the last.
+    #[inline]
+    pub fn level(&self, level: usize) -> &Bitmap {
+        if level == 0 {
+            return self;
+        }
+        let pyramid = self.pyramid.get_or_init(|| self.build_pyramid());
+        pyramid.get(level - 1).or(pyramid.last()).unwrap_or(self)
+    }
+
+    /// Levels of [`level`](Self::level), the picture itself among them.
+    pub fn level_count(&self) -> usize {
+        1 + self.width.max(self.height).ilog2() as usize
+    }
+
+    fn build_pyramid(&self) -> Vec<Bitmap> {
+        let mut levels: Vec<Bitmap> = Vec::new();
+        for _ in 1..self.level_count() {
+            levels.push(levels.last().unwrap_or(self).halved());
+        }
+        levels
+    }
+
+    fn halved(&self) -> Bitmap {
+        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
+        // What a texel covers of the larger picture: texels, and how much of each.
+        let cover = |i: usize, from: usize, to: usize| {
+            let scale = from as f64 / to as f64;
+            let (low, high) = (i as f64 * scale, (i + 1) as f64 * scale);
+            let last = (high.ceil() as usize).min(from);
+            (low as usize..last).map(move |j| {
+                let share = (high.min(j as f64 + 1.0) - low.max(j as f64)) / scale;
+                (j, share as f32)
+            })
+        };
+        let mut data = Vec::with_capacity(width * height * self.channels);
+        for y in 0..height {
+            for x in 0..width {
+                let mut sum = [0.0_f32; 4];
+                for (j, share_y) in cover(y, self.height, height) {
+                    for (i, share_x) in cover(x, self.width, width) {
+                        let texel = self.texel(i, j);
+                        sum.iter_mut().zip(texel).for_each(|(sum, t)| *sum += t * (share_x * share_y));
+                    }
+                }
+                let [r, g, b, a] = sum;
+                match self.channels {
+                    1 => data.push(r),
+                    2 => data.extend([r, a]),
+                    3 => data.extend([r, g, b]),
+                    _ => data.extend([r, g, b, a]),
+                }
+            }
+        }
+        Bitmap {
+            width,
+            height,
+            channels: self.channels,
+            non_finite: 0,
+            store: Store::Floats(data),
+            pyramid: OnceLock::new(),
+        }
     }
 
     /// Texels across.
@@ -221,6 +299,24 @@ mod tests {
         assert!((raw.rgb(0, 0)[1] - 128.0 / 255.0).abs() < 1e-6);
         assert!((srgb.alpha(0, 0) - 64.0 / 255.0).abs() < 1e-6);
         assert!(Bitmap::from_bytes(2, 2, 3, vec![0; 3], Encoding::Auto).is_none());
+    }
+
+    #[test]
+    fn every_level_has_the_same_mean() {
+        for (width, height, channels) in [(8, 4, 3), (7, 5, 1), (1, 6, 2), (13, 1, 4), (1, 1, 3)] {
+            let floats = (0..width * height * channels).map(|i| ((i * i) as f32).sin().abs()).collect();
+            let picture = Bitmap::from_floats(width, height, channels, floats, Encoding::Linear).unwrap();
+            let mean = |b: &Bitmap| {
+                let all = (0..b.width() * b.height()).map(|i| b.texel(i % b.width(), i / b.width())[0]);
+                all.sum::<f32>() / (b.width() * b.height()) as f32
+            };
+            let last = picture.level(picture.level_count() - 1);
+            assert_eq!((last.width(), last.height(), last.channels()), (1, 1, channels));
+            for level in 0..picture.level_count() + 2 {
+                let found = mean(picture.level(level));
+                assert!((found - mean(&picture)).abs() < 1e-5, "{width} x {height}, level {level}: {found}");
+            }
+        }
     }
 
     #[test]

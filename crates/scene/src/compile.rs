@@ -41,6 +41,7 @@ pub fn compile(desc: &SceneDesc, options: &CompileOptions, report: &mut Report) 
         shapes: Arena::new(),
         lights: Arena::new(),
         levels: vec![Vec::new()],
+        shining: vec![Vec::new()],
         worlds: FxHashMap::default(),
         unbounded: Vec::new(),
         default_material: None,
@@ -77,6 +78,8 @@ struct Compiler<'a> {
     lights: Arena<Light>,
     /// What the geometries of each level are; level 0 is the world.
     levels: Vec<Vec<Object>>,
+    /// What shines in each level but the world: geometry, light, and the node that describes the light.
+    shining: Vec<Vec<(u32, Light, NodeId)>>,
     /// Groups that have been built.
     worlds: FxHashMap<NodeId, Arc<World>>,
     unbounded: Vec<Object>,
@@ -156,7 +159,13 @@ impl Compiler<'_> {
             return Err(SceneError::invalid("the transform cannot be inverted", span));
         }
         let (world, inner_level) = self.group(group)?;
-        self.levels[0].push(Object::Instance(Instance { level: inner_level, world_from_object }));
+        let mut lights = Vec::new();
+        for (geometry, light, node) in &self.shining[inner_level as usize] {
+            self.origins.lights.push(*node);
+            lights.push((*geometry, self.lights.push(light.placed(&world_from_object))));
+        }
+        let instance = Instance { level: inner_level, world_from_object, lights: lights.into() };
+        self.levels[0].push(Object::Instance(instance));
         Ok(Geometry::Instance { level: world, world_from_object })
     }
 
@@ -173,6 +182,7 @@ impl Compiler<'_> {
         let children = params.nodes("shapes")?;
         self.begun_groups.push(node);
         self.levels.push(Vec::new());
+        self.shining.push(Vec::new());
         let level = self.levels.len() - 1;
         let world = Arc::new(self.level(level, &children)?);
         self.worlds.insert(node, world.clone());
@@ -205,16 +215,17 @@ impl Compiler<'_> {
             None => self.default_material()?,
         };
         let light = match params.try_node("emission")? {
-            Some(_) if level > 0 => {
-                let help = "place the shape in the world itself".to_owned();
-                self.resolve.report.warn_with_help(
-                    "shapes inside groups cannot shine yet",
-                    Some(help),
-                    desc[node].span,
-                );
+            // Each instance of the group makes a light of its own from it.
+            Some(emission) if level > 0 => {
+                let light = self.emission(id, emission)?;
+                self.shining[level].push((self.levels[level].len() as u32, light, emission));
                 None
             }
-            Some(emission) => Some(self.emission(id, emission)?),
+            Some(emission) => {
+                let light = self.emission(id, emission)?;
+                self.origins.lights.push(emission);
+                Some(self.lights.push(light))
+            }
             None => None,
         };
         let alpha = if params.has("alpha") {
@@ -236,7 +247,7 @@ impl Compiler<'_> {
         Ok(geometry)
     }
 
-    fn emission(&mut self, shape: Id<Shape>, node: NodeId) -> Result<Id<Light>, SceneError> {
+    fn emission(&mut self, shape: Id<Shape>, node: NodeId) -> Result<Light, SceneError> {
         self.resolve.expect(node, Family::Light)?;
         let desc = self.resolve.desc;
         if !self.shapes[shape].area().is_finite() {
@@ -248,8 +259,7 @@ impl Compiler<'_> {
         self.resolve.emitting_shape = Some(shape);
         let light = Light::build(&desc[node], &mut self.resolve);
         self.resolve.emitting_shape = None;
-        self.origins.lights.push(node);
-        Ok(self.lights.push(light?))
+        light
     }
 
     fn default_material(&mut self) -> Result<Id<Material>, SceneError> {
@@ -339,6 +349,10 @@ impl Compiler<'_> {
     ) -> Scene {
         let has_alpha =
             self.levels.iter().flatten().any(|object| matches!(object, Object::Solid { alpha: Some(_), .. }));
+        // Many samples a pixel do part of the filtering themselves, as in pbrt.
+        let is_filtered = self.resolve.textures.iter().any(|(_, texture)| texture.is_filtered());
+        let samples = sampler.sample_count().max(1) as f32;
+        let footprint_scale = if is_filtered { samples.sqrt().recip().max(0.125) } else { 0.0 };
         let environments =
             self.lights.iter().filter(|(_, light)| light.is_environment()).map(|(id, _)| id).collect();
         let origins = Origins { materials: self.resolve.material_nodes(), ..self.origins };
@@ -359,6 +373,7 @@ impl Compiler<'_> {
             levels: self.levels,
             unbounded: self.unbounded,
             has_alpha,
+            footprint_scale,
         };
         let counts = scene.counts();
         tracing::debug!(counts.shapes, counts.primitives, counts.textures, counts.lights, "scene built");

@@ -5,6 +5,7 @@ use aureole_desc::Node;
 use aureole_elements::bsdf::MaterialContext;
 use aureole_elements::light::{LightContext, LightSample};
 use aureole_elements::shape::ShapeHit;
+use aureole_elements::texture::Footprint;
 use aureole_elements::{
     Bsdf, Camera, Filter, Light, Material, Sampler, Shape, SurfacePoint, Texture, TextureContext,
 };
@@ -28,6 +29,17 @@ pub(crate) enum Object {
 pub(crate) struct Instance {
     pub level: u32,
     pub world_from_object: Transform,
+    /// Geometries of the group that shine, in ascending order, and the lights that they are here.
+    pub lights: Box<[(u32, Id<Light>)]>,
+}
+
+impl Instance {
+    /// The light that a geometry of the group is here.
+    #[inline]
+    fn light(&self, geometry: u32) -> Option<Id<Light>> {
+        let found = self.lights.binary_search_by_key(&geometry, |(geometry, _)| *geometry).ok()?;
+        Some(self.lights[found].1)
+    }
 }
 
 /// A scene that is ready for rays. Nothing in it changes while it is rendered.
@@ -55,6 +67,8 @@ pub struct Scene {
     pub(crate) levels: Vec<Vec<Object>>,
     pub(crate) unbounded: Vec<Object>,
     pub(crate) has_alpha: bool,
+    /// By how much footprints are narrower than a pixel; zero where no texture is filtered.
+    pub(crate) footprint_scale: f32,
     /// What was built from which nodes.
     pub origins: Origins,
 }
@@ -196,7 +210,11 @@ impl Scene {
         let Object::Solid { shape, material, light, .. } = object else {
             unreachable!("instances hold no hits of their own")
         };
-        Elements { shape: *shape, material: *material, light: *light }
+        let light = match self.levels[0].get(hit.instance as usize) {
+            Some(Object::Instance(instance)) => instance.light(hit.geometry),
+            _ => *light,
+        };
+        Elements { shape: *shape, material: *material, light }
     }
 
     fn instanced(&self, ray: &Ray, hit: &SceneHit, local: ShapeHit) -> Interaction<'_> {
@@ -206,7 +224,11 @@ impl Scene {
         let place = &instance.world_from_object;
         let object = &self.levels[instance.level as usize][hit.geometry as usize];
         let inner = self.solid(object, &place.inverse().ray(ray), local);
-        Interaction { surface: inner.surface.transformed(place), ..inner }
+        Interaction {
+            surface: inner.surface.transformed(place),
+            light: instance.light(hit.geometry),
+            ..inner
+        }
     }
 
     #[inline]
@@ -237,6 +259,7 @@ impl Scene {
             n: surface.frame.n,
             dp_duv: [surface.dp_du, surface.dp_dv],
             mesh: at.shape.mesh_point(&at.hit),
+            footprint: if self.footprint_scale > 0.0 { self.footprint(surface) } else { None },
         };
         let context = MaterialContext {
             texture,
@@ -249,6 +272,12 @@ impl Scene {
         };
         bsdf.clear();
         self.materials[at.material].evaluate(&context, 1.0, bsdf);
+    }
+
+    /// What a pixel covers of a surface, if the camera saw it directly.
+    fn footprint(&self, at: &SurfacePoint) -> Option<Footprint> {
+        let steps = self.camera.footprint(at.p, at.ng).map(|step| step * self.footprint_scale);
+        Footprint::new(steps, [at.dp_du, at.dp_dv])
     }
 
     /// What lights may ask for.

@@ -46,6 +46,7 @@ impl Scene {
             n: surface.frame.n,
             dp_duv: [surface.dp_du, surface.dp_dv],
             mesh: shape.mesh_point(hit),
+            footprint: None,
         };
         let alpha = context.float(*alpha);
         if alpha >= 1.0 {

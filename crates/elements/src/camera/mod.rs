@@ -11,7 +11,9 @@ mod spherical;
 
 use std::fmt::Debug;
 
-use aureole_math::{Point2, Ray};
+use aureole_math::{Frame, Point2, Point3, Ray, Vector3};
+
+use crate::texture::onto_plane;
 
 pub use distant::Distant;
 pub use fov::FovAxis;
@@ -35,6 +37,19 @@ pub struct CameraSample {
 pub trait CameraOps: Debug + Send + Sync {
     /// The ray, with a unit direction in the world, that carries light to a place on the film.
     fn generate_ray(&self, sample: &CameraSample) -> Ray;
+
+    /// How far a place with unit normal `n` moves on its plane from a pixel to the next, across and down, if the camera sees it
+    /// directly; zero where that is not known.
+    fn footprint(&self, _p: Point3, _n: Vector3) -> [Vector3; 2] {
+        [Vector3::ZERO; 2]
+    }
+}
+
+/// Steps of an angle of one pixel in any two directions across the line of sight.
+fn cone_footprint(d: Vector3, n: Vector3, angle: f32) -> [Vector3; 2] {
+    let Some(w) = d.try_normalized() else { return [Vector3::ZERO; 2] };
+    let frame = Frame::from_normal(w);
+    [frame.s, frame.t].map(|side| onto_plane(side * (angle * d.length()), d, n))
 }
 
 registry! {
@@ -54,12 +69,17 @@ impl Camera {
     pub fn generate_ray(&self, sample: &CameraSample) -> Ray {
         each_camera!(self, c => c.generate_ray(sample))
     }
+
+    /// How far a place moves on its plane from a pixel to the next.
+    pub fn footprint(&self, p: Point3, n: Vector3) -> [Vector3; 2] {
+        each_camera!(self, c => c.footprint(p, n))
+    }
 }
 
 /// Parameters that projective cameras share.
 mod projective {
     use aureole_desc::{ParamDoc, Params, SceneError};
-    use aureole_math::{Point2, Transform};
+    use aureole_math::{Point2, Transform, Vector3};
 
     use crate::{FilmSpec, Resolver};
 
@@ -148,9 +168,49 @@ mod projective {
             )
         }
 
+        /// Steps from a pixel to the next at distance one along the axis, in the world.
+        pub(super) fn pixel_steps(&self) -> [Vector3; 2] {
+            let [x0, x1, y0, y1] = self.window;
+            let (across, down) = ((x1 - x0) / self.film.width as f32, (y0 - y1) / self.film.height as f32);
+            [Vector3::new(-across, 0.0, 0.0), Vector3::new(0.0, down, 0.0)]
+                .map(|v| self.world_from_camera.vector(v))
+        }
+
         #[inline]
         pub(super) fn time(&self, t: f32) -> f32 {
             self.shutter[0] + (self.shutter[1] - self.shutter[0]) * t
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use aureole_desc::{Family, Node, Params, Span, Value};
+    use aureole_math::Transform;
+
+    use super::*;
+    use crate::element::tests::NoResolver;
+
+    /// What a ray through the next pixel meets on the plane is one footprint away.
+    #[test]
+    fn footprints_are_the_way_to_the_next_pixel() {
+        let place = Transform::translate(Vector3::new(0.5, 1.0, -2.0))
+            * Transform::rotate(Vector3::new(0.1, 1.0, 0.2), 25.0);
+        for kind in ["perspective", "orthographic"] {
+            let params = Params::new().with("world_from_camera", Value::Transform(place));
+            let node = Node::new(Family::Camera, kind, params, Span::NONE);
+            let camera = Camera::build(&node, &mut NoResolver::default()).expect("is sound");
+            let ray = |x: f32, y: f32| {
+                let lens = Point2::new(0.5, 0.5);
+                camera.generate_ray(&CameraSample { film: Point2::new(x, y), lens, time: 0.0 })
+            };
+            let n = Vector3::new(0.3, 0.8, -0.7).normalized();
+            let p = ray(60.0, 150.0).at(5.0);
+            let meets = |ray: Ray| ray.at((p - ray.origin).dot(n) / ray.direction.dot(n));
+            let [across, down] = camera.footprint(p, n);
+            let [right, below] = [ray(61.0, 150.0), ray(60.0, 151.0)].map(|ray| meets(ray) - p);
+            assert!((across - right).length() < 0.02 * right.length(), "{kind}: {across:?} {right:?}");
+            assert!((down - below).length() < 0.02 * below.length(), "{kind}: {down:?} {below:?}");
         }
     }
 }

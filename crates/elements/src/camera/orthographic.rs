@@ -7,6 +7,7 @@ use aureole_math::{Point3, Ray, Vector3, warp};
 
 use super::projective::{self, Projective};
 use super::{CameraOps, CameraSample};
+use crate::texture::onto_plane;
 use crate::{Element, Resolver};
 
 /// A camera without perspective.
@@ -46,5 +47,10 @@ impl CameraOps for Orthographic {
             t_max: camera.far * length,
             time: camera.time(sample.time),
         }
+    }
+
+    fn footprint(&self, _: Point3, n: Vector3) -> [Vector3; 2] {
+        let axis = self.projective.world_from_camera.vector(Vector3::Z);
+        self.projective.pixel_steps().map(|step| onto_plane(step, axis, n))
     }
 }

@@ -14,7 +14,8 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point3, Ray, Vector3, warp};
 
 use super::projective::{self, Projective};
-use super::{CameraOps, CameraSample, FovAxis};
+use super::{CameraOps, CameraSample, FovAxis, cone_footprint};
+use crate::texture::onto_plane;
 use crate::{Element, Resolver};
 
 /// A pinhole or thin-lens camera.
@@ -100,5 +101,19 @@ impl CameraOps for Perspective {
             t_max: camera.far * per_depth,
             time: camera.time(sample.time),
         }
+    }
+
+    fn footprint(&self, p: Point3, n: Vector3) -> [Vector3; 2] {
+        let camera = &self.projective;
+        let place = &camera.world_from_camera;
+        let d = p - place.point(Point3::ORIGIN);
+        let steps = camera.pixel_steps();
+        let Some(axis) = place.vector(Vector3::Z).try_normalized() else { return [Vector3::ZERO; 2] };
+        let depth = axis.dot(d);
+        // What is behind or far aside counts as if the camera turned towards it.
+        if depth < 0.1 * d.length() {
+            return cone_footprint(d, n, steps[0].length().min(steps[1].length()));
+        }
+        steps.map(|step| onto_plane(step * depth, d, n))
     }
 }

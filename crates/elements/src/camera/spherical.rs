@@ -10,7 +10,7 @@ use std::f32::consts::{PI, TAU};
 use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point2, Point3, Ray, Transform, Vector3, warp};
 
-use super::{CameraOps, CameraSample};
+use super::{CameraOps, CameraSample, cone_footprint};
 use crate::{Element, FilmSpec, Resolver};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,5 +70,9 @@ impl CameraOps for Spherical {
             self.world_from_camera.point(Point3::ORIGIN),
             self.world_from_camera.vector(direction).normalized(),
         )
+    }
+    fn footprint(&self, p: Point3, n: Vector3) -> [Vector3; 2] {
+        let d = p - self.world_from_camera.point(Point3::ORIGIN);
+        cone_footprint(d, n, PI / self.film.height as f32)
     }
 }

@@ -3,7 +3,8 @@
 //! | parameter | type | default | meaning |
 //! |---|---|---|---|
 //! | `filename` | path | | PNG, JPEG, EXR, HDR, TGA, ... |
-//! | `filter` | string | bilinear | `bilinear` or `nearest` |
+//! | `filter` | string | bilinear | `bilinear`, `nearest`; by what a pixel covers: `trilinear`, `ewa` |
+//! | `max_anisotropy` | float | 8 | of `ewa`: how much longer than wide its ellipse may be |
 //! | `wrap` | string | repeat | beyond the unit square: `repeat`, `mirror`, `clamp`, `black` |
 //! | `encoding` | string | auto | `auto` (by file type), `srgb`, `linear` (raw data), `gamma` |
 //! | `gamma` | float | 2.2 | for `encoding` = `gamma` |
@@ -15,6 +16,12 @@
 //! | `invert` | bool | false | 1 - value, before `scale` |
 //!
 //! v = 0 is the bottom of the picture.
+//!
+//! `trilinear` and `ewa` read smaller versions of the picture where a pixel of the camera covers more than a texel: the former
+//! by the pixel's longest step, the latter by a Gaussian over its ellipse. What a pixel covers is known from the camera alone,
+//! as if it saw each place directly, also in mirrors; where a texel covers more than a pixel, both are `bilinear`.
+//!
+//! References: [Williams 1983] "Pyramidal Parametrics"; [Heckbert 1989] "Fundamentals of Texture Mapping and Image Warping".
 
 use std::sync::Arc;
 
@@ -32,6 +39,8 @@ use crate::{Element, Resolver};
 enum Filter {
     Bilinear,
     Nearest,
+    Trilinear,
+    Ewa,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +54,7 @@ enum Channel {
 pub struct BitmapTexture {
     bitmap: Arc<Bitmap>,
     filter: Filter,
+    max_anisotropy: f32,
     wrap: Wrap,
     channel: Channel,
     mapping: Mapping,
@@ -55,7 +65,11 @@ pub struct BitmapTexture {
 impl BitmapTexture {
     #[inline]
     fn texel(&self, x: i64, y: i64) -> [f32; 3] {
-        let b = &self.bitmap;
+        self.texel_of(&self.bitmap, x, y)
+    }
+
+    #[inline]
+    fn texel_of(&self, b: &Bitmap, x: i64, y: i64) -> [f32; 3] {
         match (self.wrap.index(x, b.width() as i64), self.wrap.index(y, b.height() as i64)) {
             (Some(x), Some(y)) => match self.channel {
                 Channel::Color => b.rgb(x, y),
@@ -78,20 +92,105 @@ impl BitmapTexture {
         let p = self.place(at);
         let value = match self.filter {
             Filter::Nearest => self.texel(p.x.floor() as i64, p.y.floor() as i64),
-            Filter::Bilinear => {
-                let (x, y) = (p.x - 0.5, p.y - 0.5);
-                let (x0, y0) = (x.floor(), y.floor());
-                let (fx, fy) = (x - x0, y - y0);
-                let (x0, y0) = (x0 as i64, y0 as i64);
-                let [a, b, c, d] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.texel(x0 + i, y0 + j));
-                std::array::from_fn(|i| {
-                    let top = a[i] + (b[i] - a[i]) * fx;
-                    let bottom = c[i] + (d[i] - c[i]) * fx;
-                    top + (bottom - top) * fy
-                })
-            }
+            Filter::Bilinear => self.bilinear(&self.bitmap, p),
+            Filter::Trilinear | Filter::Ewa => self.filtered(at, p),
         };
         value.map(|x| (if self.invert { 1.0 - x } else { x }) * self.scale)
+    }
+}
+
+/// Filtering by footprints.
+impl BitmapTexture {
+    /// Between the four nearest texels of a level; `p` counts its texels.
+    #[inline]
+    fn bilinear(&self, level: &Bitmap, p: Vector2) -> [f32; 3] {
+        let (x, y) = (p.x - 0.5, p.y - 0.5);
+        let (x0, y0) = (x.floor(), y.floor());
+        let (fx, fy) = (x - x0, y - y0);
+        let (x0, y0) = (x0 as i64, y0 as i64);
+        let [a, b, c, d] =
+            [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.texel_of(level, x0 + i, y0 + j));
+        std::array::from_fn(|i| {
+            let top = a[i] + (b[i] - a[i]) * fx;
+            let bottom = c[i] + (d[i] - c[i]) * fx;
+            top + (bottom - top) * fy
+        })
+    }
+
+    /// The mean over what a pixel covers; `p` counts texels of the whole picture.
+    fn filtered(&self, at: &TextureContext<'_>, p: Vector2) -> [f32; 3] {
+        let (width, height) = (self.bitmap.width() as f32, self.bitmap.height() as f32);
+        let steps =
+            self.mapping.footprint(at).map(|steps| steps.map(|s| Vector2::new(s.x * width, -s.y * height)));
+        let Some([mut long, mut short]) = steps else { return self.bilinear(&self.bitmap, p) };
+        if long.length() < short.length() {
+            std::mem::swap(&mut long, &mut short);
+        }
+        let (length, mut breadth) = (long.length(), short.length());
+        if length <= 1.0 || !length.is_finite() {
+            return self.bilinear(&self.bitmap, p);
+        }
+        if self.filter == Filter::Trilinear {
+            return self.between_levels(length, |level| {
+                let b = self.bitmap.level(level);
+                self.bilinear(
+                    b,
+                    Vector2::new(p.x * b.width() as f32 / width, p.y * b.height() as f32 / height),
+                )
+            });
+        }
+        // An ellipse that is too thin would ask for too many texels.
+        if breadth * self.max_anisotropy < length {
+            let least = length / self.max_anisotropy;
+            let across = Vector2::new(-long.y, long.x) / length;
+            short = if breadth > 0.0 { short * (least / breadth) } else { across * least };
+            breadth = least;
+        }
+        self.between_levels(breadth.max(1.0), |level| self.ellipse(level, p, [long, short]))
+    }
+
+    /// Blends what two levels give, so that a texel of them covers `size` texels of the whole picture.
+    fn between_levels(&self, size: f32, at_level: impl Fn(usize) -> [f32; 3]) -> [f32; 3] {
+        let top = (self.bitmap.level_count() - 1) as f32;
+        let level = size.log2().clamp(0.0, top);
+        let below = level.floor();
+        let (a, blend) = (at_level(below as usize), level - below);
+        if blend == 0.0 {
+            return a;
+        }
+        let b = at_level(below as usize + 1);
+        std::array::from_fn(|i| a[i] + (b[i] - a[i]) * blend)
+    }
+
+    /// The mean under a Gaussian over an ellipse, cut off at two standard deviations [Heckbert 1989, section 3.5.8].
+    fn ellipse(&self, level: usize, p: Vector2, steps: [Vector2; 2]) -> [f32; 3] {
+        let b = self.bitmap.level(level);
+        let scale_x = b.width() as f32 / self.bitmap.width() as f32;
+        let scale_y = b.height() as f32 / self.bitmap.height() as f32;
+        let center = Vector2::new(p.x * scale_x - 0.5, p.y * scale_y - 0.5);
+        let [s, t] = steps.map(|d| Vector2::new(d.x * scale_x, d.y * scale_y));
+        // a x² + b x y + c y² < 1 inside; one texel is added to either axis, so that none falls between.
+        let (a, c) = (s.y * s.y + t.y * t.y + 1.0, s.x * s.x + t.x * t.x + 1.0);
+        let mixed = -2.0 * (s.x * s.y + t.x * t.y);
+        let f = a * c - 0.25 * mixed * mixed;
+        let (reach_x, reach_y) = (c.sqrt(), a.sqrt());
+        let (a, mixed, c) = (a / f, mixed / f, c / f);
+        let range = |x: f32, reach: f32| (x - reach).ceil() as i64..=(x + reach).floor() as i64;
+        let (mut sum, mut total) = ([0.0_f32; 3], 0.0);
+        for y in range(center.y, reach_y) {
+            let dy = y as f32 - center.y;
+            for x in range(center.x, reach_x) {
+                let dx = x as f32 - center.x;
+                let r2 = a * dx * dx + mixed * dx * dy + c * dy * dy;
+                if r2 < 1.0 {
+                    let weight = (-2.0 * r2).exp() - (-2.0_f32).exp();
+                    let texel = self.texel_of(b, x, y);
+                    sum.iter_mut().zip(texel).for_each(|(sum, t)| *sum += weight * t);
+                    total += weight;
+                }
+            }
+        }
+        if total > 0.0 { sum.map(|x| x / total) } else { self.bilinear(b, center + Vector2::new(0.5, 0.5)) }
     }
 }
 
@@ -99,7 +198,18 @@ impl Element for BitmapTexture {
     const SUMMARY: &'static str = "A picture.";
     const PARAMS: &'static [ParamDoc] = &[
         ParamDoc { name: "filename", ty: "path", default: "", doc: "PNG, JPEG, EXR, HDR, TGA, ..." },
-        ParamDoc { name: "filter", ty: "string", default: "bilinear", doc: "`bilinear` or `nearest`" },
+        ParamDoc {
+            name: "filter",
+            ty: "string",
+            default: "bilinear",
+            doc: "`bilinear`, `nearest`; by what a pixel covers: `trilinear`, `ewa`",
+        },
+        ParamDoc {
+            name: "max_anisotropy",
+            ty: "float",
+            default: "8",
+            doc: "of `ewa`: how much longer than wide its ellipse may be",
+        },
         ParamDoc {
             name: "wrap",
             ty: "string",
@@ -141,8 +251,16 @@ impl Element for BitmapTexture {
         )?;
         Ok(Self {
             bitmap: resolver.bitmap(&path, encoding, at)?,
-            filter: params
-                .one_of("filter", &[("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)])?,
+            filter: params.one_of(
+                "filter",
+                &[
+                    ("bilinear", Filter::Bilinear),
+                    ("nearest", Filter::Nearest),
+                    ("trilinear", Filter::Trilinear),
+                    ("ewa", Filter::Ewa),
+                ],
+            )?,
+            max_anisotropy: params.float_in("max_anisotropy", 8.0, 1.0, 64.0)?,
             wrap: params.one_of(
                 "wrap",
                 &[
@@ -206,5 +324,95 @@ impl TextureOps for BitmapTexture {
 
     fn resolution(&self) -> Option<[u32; 2]> {
         Some([self.bitmap.width() as u32, self.bitmap.height() as u32])
+    }
+
+    fn is_filtered(&self) -> bool {
+        matches!(self.filter, Filter::Trilinear | Filter::Ewa)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use aureole_math::Point2;
+    use aureole_spectrum::Wavelengths;
+
+    use super::*;
+    use crate::texture::{Footprint, UvMap};
+
+    /// Black and white squares of one texel.
+    fn checker(filter: Filter) -> BitmapTexture {
+        const N: usize = 64;
+        let data = (0..N * N).map(|i| if (i % N + i / N).is_multiple_of(2) { 0 } else { 255 }).collect();
+        let bitmap = Bitmap::from_bytes(N, N, 1, data, Encoding::Linear).expect("is as long as it must be");
+        BitmapTexture {
+            bitmap: Arc::new(bitmap),
+            filter,
+            max_anisotropy: 8.0,
+            wrap: Wrap::Repeat,
+            channel: Channel::Color,
+            mapping: Mapping::default(),
+            scale: 1.0,
+            invert: false,
+        }
+    }
+
+    fn value(texture: &BitmapTexture, uv: Point2, steps: Option<[Vector2; 2]>) -> f32 {
+        let textures = Arena::new();
+        let footprint = steps.map(|duv| Footprint { dp: [aureole_math::Vector3::ZERO; 2], duv });
+        let at = TextureContext { footprint, ..TextureContext::at_uv(&textures, Wavelengths::RGB, uv) };
+        texture.eval_float(&at)
+    }
+
+    #[test]
+    fn far_away_a_checkerboard_is_its_mean() {
+        for filter in [Filter::Trilinear, Filter::Ewa] {
+            let texture = checker(filter);
+            for (i, step) in [(0, 4.0), (1, 9.0), (2, 100.0), (3, 1e6)] {
+                let uv = Point2::new(0.17 * i as f32, 0.31);
+                let s = step / 64.0;
+                let steps = [Vector2::new(s, 0.3 * s), Vector2::new(-0.4 * s, 1.1 * s)];
+                let found = value(&texture, uv, Some(steps));
+                assert!((found - 0.5).abs() < 0.03, "{filter:?} {step}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn up_close_nothing_is_blurred() {
+        let plain = checker(Filter::Bilinear);
+        for filter in [Filter::Trilinear, Filter::Ewa] {
+            let texture = checker(filter);
+            for i in 0..200 {
+                let uv = Point2::new(0.013 * i as f32, 0.029 * i as f32);
+                let s = 0.9 / 64.0;
+                let steps = [Vector2::new(s, 0.0), Vector2::new(0.0, 0.5 * s)];
+                assert_eq!(value(&texture, uv, Some(steps)), value(&plain, uv, None));
+                assert_eq!(value(&texture, uv, None), value(&plain, uv, None));
+            }
+        }
+    }
+
+    /// Long across stripes is blurred, long along them is not: that is what an ellipse can do and a square cannot.
+    #[test]
+    fn ellipses_keep_what_lies_across_them() {
+        const N: usize = 64;
+        let data = (0..N * N).map(|i| if i % N < N / 2 { 0 } else { 255 }).collect();
+        let bitmap =
+            Arc::new(Bitmap::from_bytes(N, N, 1, data, Encoding::Linear).expect("is as long as it must be"));
+        let [ewa, trilinear] =
+            [Filter::Ewa, Filter::Trilinear].map(|f| BitmapTexture { bitmap: bitmap.clone(), ..checker(f) });
+        let uv = Point2::new(0.42, 0.5);
+        let along = Some([Vector2::new(0.0, 0.12), Vector2::new(1.0 / 64.0, 0.0)]);
+        let across = Some([Vector2::new(0.25, 0.0), Vector2::new(0.0, 1.0 / 64.0)]);
+        assert!(value(&ewa, uv, along) < 0.01);
+        assert!(value(&trilinear, uv, along) > 0.02);
+        assert!(value(&ewa, uv, across) > 0.05);
+    }
+
+    #[test]
+    fn mapped_footprints_follow_the_map() {
+        let map = UvMap::new(&aureole_math::Transform::scale(aureole_math::Vector3::new(3.0, 2.0, 1.0)));
+        let d = map.linear(Vector2::new(0.1, -0.2));
+        assert!((d - Vector2::new(0.3, -0.4)).length() < 1e-6);
     }
 }

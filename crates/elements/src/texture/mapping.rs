@@ -50,6 +50,14 @@ pub(super) const TEXTURE_FROM_WORLD: ParamDoc = ParamDoc {
     doc: "into the texture's space, for what depends on where the surface is",
 };
 
+impl Default for Mapping {
+    /// The surface's own parameters.
+    fn default() -> Self {
+        let identity = Transform::default();
+        Self { kind: Kind::Uv, texture_from_world: identity, to_uv: UvMap::new(&identity) }
+    }
+}
+
 impl Mapping {
     pub(super) fn from_params(params: &mut Params) -> Result<Self, SceneError> {
         Ok(Self {
@@ -73,16 +81,38 @@ impl Mapping {
         if self.kind == Kind::Uv {
             return self.to_uv.apply(at.uv);
         }
-        let p = self.texture_from_world.point(at.p);
-        let st = match self.kind {
+        self.to_uv.apply(self.from_position(at.p))
+    }
+
+    /// Where a point of the world is before `to_uv`.
+    fn from_position(&self, p: Point3) -> Point2 {
+        let p = self.texture_from_world.point(p);
+        match self.kind {
             Kind::Spherical => {
                 let w = (p - Point3::ORIGIN).try_normalized().unwrap_or(Vector3::Z);
                 Point2::new(warp::polar_angle(w) * FRAC_1_PI, warp::azimuth(w.y, w.x) / TAU)
             }
             Kind::Cylindrical => Point2::new((PI + p.y.atan2(p.x)) / TAU, p.z),
             Kind::Planar | Kind::Uv => Point2::new(p.x, p.y),
-        };
-        self.to_uv.apply(st)
+        }
+    }
+
+    /// The steps on the picture from a pixel to the next, across and down.
+    pub fn footprint(&self, at: &TextureContext<'_>) -> Option<[Vector2; 2]> {
+        let footprint = at.footprint?;
+        Some([0, 1].map(|i| {
+            if self.kind == Kind::Uv {
+                return self.to_uv.linear(footprint.duv[i]);
+            }
+            let mut step = self.from_position(at.p + footprint.dp[i]) - self.from_position(at.p);
+            // Azimuths jump by one.
+            match self.kind {
+                Kind::Spherical => step.y -= step.y.round(),
+                Kind::Cylindrical => step.x -= step.x.round(),
+                Kind::Planar | Kind::Uv => {}
+            }
+            self.to_uv.linear(step)
+        }))
     }
 
     /// A gradient on the picture as one by the surface's parameters; `None` where that is not a plain matrix product.

@@ -6,6 +6,7 @@ mod checkerboard;
 mod constant;
 mod direction_mix;
 mod dots;
+mod footprint;
 mod fractal;
 mod grid;
 mod mapping;
@@ -30,6 +31,8 @@ pub use checkerboard::Checkerboard;
 pub use constant::Constant;
 pub use direction_mix::DirectionMix;
 pub use dots::Dots;
+pub use footprint::Footprint;
+pub(crate) use footprint::onto_plane;
 pub use fractal::Fractal;
 pub use grid::Grid;
 pub use mapping::Mapping;
@@ -70,13 +73,15 @@ pub struct TextureContext<'a> {
     pub dp_duv: [Vector3; 2],
     /// The place on the mesh, if the surface is one.
     pub mesh: Option<MeshPoint<'a>>,
+    /// What a pixel covers here, for textures that are filtered by it; not known where no texture asks.
+    pub footprint: Option<Footprint>,
 }
 
 impl<'a> TextureContext<'a> {
     /// A context that knows nothing but uv, for lights and tests.
     pub fn at_uv(textures: &'a Arena<Texture>, wavelengths: Wavelengths, uv: Point2) -> Self {
         let (p, n) = (Point3::ORIGIN, Vector3::Z);
-        Self { textures, wavelengths, uv, p, n, dp_duv: [Vector3::ZERO; 2], mesh: None }
+        Self { textures, wavelengths, uv, p, n, dp_duv: [Vector3::ZERO; 2], mesh: None, footprint: None }
     }
 
     /// The value of a texture here.
@@ -123,6 +128,11 @@ pub trait TextureOps: Debug + Send + Sync {
 
     /// Whether the value is the same everywhere.
     fn is_constant(&self) -> bool {
+        false
+    }
+
+    /// Whether [`TextureContext::footprint`] makes a difference.
+    fn is_filtered(&self) -> bool {
         false
     }
 }
@@ -191,5 +201,10 @@ impl Texture {
     /// Whether the value is the same everywhere.
     pub fn is_constant(&self) -> bool {
         each_texture!(self, t => t.is_constant())
+    }
+
+    /// Whether [`TextureContext::footprint`] makes a difference.
+    pub fn is_filtered(&self) -> bool {
+        each_texture!(self, t => t.is_filtered())
     }
 }

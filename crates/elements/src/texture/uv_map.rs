@@ -26,6 +26,11 @@ impl UvMap {
         )
     }
 
+    /// The mapped difference of two points.
+    pub fn linear(&self, d: Vector2) -> Vector2 {
+        Vector2::new(self.u[0] * d.x + self.u[1] * d.y, self.v[0] * d.x + self.v[1] * d.y)
+    }
+
     /// A gradient in mapped coordinates as one in the surface's.
     pub fn pull_back(&self, g: Vector2) -> Vector2 {
         Vector2::new(g.x * self.u[0] + g.y * self.v[0], g.x * self.u[1] + g.y * self.v[1])

@@ -19,6 +19,7 @@ use Value::Float;
 /// A material at a point seen from `wo`.
 fn bsdf_at(world: &World, material: Id<Material>, frame: Frame, wo: Vector3) -> Bsdf {
     let texture = TextureContext {
+        footprint: None,
         textures: &world.textures,
         wavelengths: Wavelengths::RGB,
         uv: Point2::new(0.4, 0.6),

@@ -197,8 +197,18 @@ impl Reader<'_, '_> {
         })?;
         let mut params = Params::new();
         params.push("filename", Value::Path(path), given.at("filename"));
-        let filter = if given.text("filter")? == Some("point") { "nearest" } else { "bilinear" };
+        let filter = match given.text("filter")?.unwrap_or("bilinear") {
+            "point" => "nearest",
+            "ewa" | "EWA" => "ewa",
+            filter @ ("bilinear" | "trilinear") => filter,
+            other => {
+                let message = format!("`filter` is `point`, `bilinear`, `trilinear` or `ewa`, not `{other}`");
+                return Err(SceneError::invalid(message, given.at("filter")));
+            }
+        };
         params.push("filter", Value::String(filter.into()), at);
+        let anisotropy = given.float("maxanisotropy", 8.0)?.clamp(1.0, 64.0);
+        params.push("max_anisotropy", Value::Float(anisotropy), given.at("maxanisotropy"));
         let wrap = match given.text("wrap")?.unwrap_or("repeat") {
             wrap @ ("repeat" | "clamp" | "black") => wrap,
             "octahedralsphere" => "clamp",
@@ -212,7 +222,6 @@ impl Reader<'_, '_> {
         params.push("scale", Value::Float(given.float("scale", 1.0)?), at);
         params.push("invert", Value::Bool(given.bool("invert", false)?), at);
         self.mapping(given, Transform::IDENTITY, &mut params)?;
-        given.get("maxanisotropy");
         Ok(params)
     }
 }
