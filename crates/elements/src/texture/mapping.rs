@@ -81,11 +81,11 @@ impl Mapping {
         if self.kind == Kind::Uv {
             return self.to_uv.apply(at.uv);
         }
-        self.to_uv.apply(self.from_position(at.p))
+        self.to_uv.apply(self.place_of(at.p))
     }
 
     /// Where a point of the world is before `to_uv`.
-    fn from_position(&self, p: Point3) -> Point2 {
+    fn place_of(&self, p: Point3) -> Point2 {
         let p = self.texture_from_world.point(p);
         match self.kind {
             Kind::Spherical => {
@@ -104,7 +104,7 @@ impl Mapping {
             if self.kind == Kind::Uv {
                 return self.to_uv.linear(footprint.duv[i]);
             }
-            let mut step = self.from_position(at.p + footprint.dp[i]) - self.from_position(at.p);
+            let mut step = self.place_of(at.p + footprint.dp[i]) - self.place_of(at.p);
             // Azimuths jump by one.
             match self.kind {
                 Kind::Spherical => step.y -= step.y.round(),

@@ -216,9 +216,13 @@ fn hit_triangle(ray: &Ray, [a, b, c]: [Point3; 3], primitive: u32) -> Option<Sha
     let (e1, e2, d, s) = (wide(b - a), wide(c - a), wide(ray.direction), wide(ray.origin - a));
     let p = cross(d, e2);
     let det = dot(e1, p);
+    let u = dot(s, p) / det;
+    if !(0.0..=1.0).contains(&u) {
+        return None; // most of them, at half the cost
+    }
     let q = cross(s, e1);
-    let (u, v, t) = (dot(s, p) / det, dot(d, q) / det, dot(e2, q) / det);
-    let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > f64::from(ray.t_min) && t < f64::from(ray.t_max);
+    let (v, t) = (dot(d, q) / det, dot(e2, q) / det);
+    let inside = v >= 0.0 && u + v <= 1.0 && t > f64::from(ray.t_min) && t < f64::from(ray.t_max);
     inside.then_some(ShapeHit { t: t as f32, primitive, uv: [u as f32, v as f32] })
 }
 
