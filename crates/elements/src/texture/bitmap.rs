@@ -146,6 +146,11 @@ impl BitmapTexture {
             short = if breadth > 0.0 { short * (least / breadth) } else { across * least };
             breadth = least;
         }
+        // What covers the whole picture sees its mean; an ellipse over many copies of it would cost as many texels.
+        let top = self.bitmap.level_count() - 1;
+        if breadth >= (1_u64 << top) as f32 {
+            return self.bilinear(self.bitmap.level(top), Vector2::new(0.5, 0.5));
+        }
         self.between_levels(breadth.max(1.0), |level| self.ellipse(level, p, [long, short]))
     }
 
