@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
+use aureole_math::{Bounds3, Point3};
 use rayon::prelude::*;
 
 use crate::Accuracy;
 use crate::big::Big;
+use crate::overlap::triangle_overlaps_box;
+use crate::things::Things;
 use crate::triangle::{Block, LANES};
 
 /// What leaves refer to.
@@ -43,7 +46,7 @@ impl Meshes {
 
     /// The corners of a triangle.
     #[inline]
-    fn triangle(&self, id: u32) -> [[f32; 3]; 3] {
+    pub(crate) fn triangle(&self, id: u32) -> [[f32; 3]; 3] {
         let mesh = match self.all.len() {
             1 => 0,
             _ => self.all.partition_point(|mesh| mesh.first <= id) - 1,
@@ -56,6 +59,20 @@ impl Meshes {
     fn block(&self, ids: &[u32; LANES]) -> Block {
         let used = ids.iter().position(|&id| id == u32::MAX).unwrap_or(LANES);
         Block::new(self.accuracy, &ids[..used], |id| self.triangle(id))
+    }
+}
+
+impl Things for Meshes {
+    fn bounds(&self, id: u32) -> Bounds3 {
+        Bounds3::around(self.triangle(id).map(Point3::from))
+    }
+
+    fn overlaps(&self, id: u32, cell: &Bounds3) -> bool {
+        triangle_overlaps_box(self.triangle(id).map(Point3::from), cell)
+    }
+
+    fn corners(&self, id: u32) -> Option<[[f32; 3]; 3]> {
+        Some(self.triangle(id))
     }
 }
 
@@ -92,6 +109,25 @@ impl Blocks {
             Self::Ready(blocks) => blocks.is_empty(),
             Self::Numbers(blocks, _) => blocks.is_empty(),
         }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Ready(blocks) => blocks.len(),
+            Self::Numbers(blocks, _) => blocks.len(),
+        }
+    }
+
+    /// Moves the triangles to where `meshes` has them now; the box around each block. Blocks that are only numbers have none.
+    pub(crate) fn refit(&mut self, meshes: &Meshes) -> Vec<Bounds3> {
+        let Self::Ready(blocks) = self else { return Vec::new() };
+        let fit = |block: &mut Block| {
+            let count = block.ids.iter().take_while(|id| **id != u32::MAX).count();
+            let ids = block.ids;
+            *block = Block::new(meshes.accuracy, &ids[..count], |id| meshes.triangle(id));
+            Bounds3::around(ids[..count].iter().flat_map(|&id| meshes.triangle(id)).map(Point3::from))
+        };
+        blocks.par_iter_mut().with_min_len(256).map(fit).collect()
     }
 
     /// A block; `made` is where it is made, if it must be.

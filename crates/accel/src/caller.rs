@@ -22,27 +22,36 @@ impl<U: UserShapes> Ask for U {
     }
 }
 
-/// Some caller; `FILTERS` says whether it is asked about every hit.
+/// Some caller; `FILTERS` says whether it is asked about every hit, by mask or by filter.
 #[derive(Clone, Copy)]
-pub(crate) struct Caller<'a, const FILTERS: bool>(&'a dyn Ask);
+pub(crate) struct Caller<'a, const FILTERS: bool> {
+    shapes: &'a dyn Ask,
+    mask: u32,
+}
 
 impl<'a, const FILTERS: bool> Caller<'a, FILTERS> {
     #[inline(always)]
     pub(crate) fn new<U: UserShapes>(shapes: &'a U) -> Self {
-        Self(shapes)
+        Self { shapes, mask: shapes.mask() }
     }
 }
 
 impl<const FILTERS: bool> UserShapes for Caller<'_, FILTERS> {
     const HAS_FILTER: bool = FILTERS;
+    const HAS_MASK: bool = FILTERS;
 
     #[inline(always)]
     fn intersect(&self, level: u32, geometry: u32, primitive: u32, ray: &Ray) -> Option<UserHit> {
-        self.0.intersect(level, geometry, primitive, ray)
+        self.shapes.intersect(level, geometry, primitive, ray)
     }
 
     #[inline(always)]
     fn accept(&self, level: u32, hit: &Hit, ray: &Ray) -> bool {
-        self.0.accept(level, hit, ray)
+        self.shapes.accept(level, hit, ray)
+    }
+
+    #[inline(always)]
+    fn mask(&self) -> u32 {
+        self.mask
     }
 }

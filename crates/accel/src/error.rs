@@ -24,6 +24,20 @@ pub enum AccelError {
         /// How many vertices there are.
         vertices: usize,
     },
+    /// Moving vertices need two keys or more, each with the same number of vertices.
+    #[error("geometry {geometry} moves by {keys} keys; it takes at least two of the same length")]
+    BadKeys {
+        /// The geometry's index.
+        geometry: usize,
+        /// How many keys there are.
+        keys: usize,
+    },
+    /// A refit takes the geometries of the build, with as many primitives.
+    #[error("geometry {geometry} has changed its kind or its number of primitives")]
+    Changed {
+        /// The geometry's index.
+        geometry: usize,
+    },
     /// 2²⁷ primitives or more in one level.
     #[error("{0} primitives are too many")]
     TooMany(u64),

@@ -11,6 +11,7 @@ use aureole_math::{Bounds3, Point3, Ray};
 
 use crate::bvh::{Leaf, TIE_SCALE, VisitLeaf};
 use crate::simd::Simd;
+use crate::things::Things;
 
 /// How a grid is laid out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +30,7 @@ impl Default for GridConfig {
 
 /// Cells along an axis at most.
 const MAX_SIDE: f64 = 1024.0;
-/// Entries in the lists of all cells at most, for each object.
+/// Entries in the lists of all cells at most, for each object; never more than 32 bits can number.
 const MAX_ENTRIES: usize = 256;
 /// How far cells reach into their neighbours, as a share of the cell and of the grid: a ray's way through the cells and its
 /// hits are rounded differently.
@@ -52,32 +53,28 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Places `count` objects by their boxes. `overlaps` says whether an object is in a box.
-    pub(crate) fn build(
-        count: usize,
-        bounds: impl Fn(u32) -> Bounds3,
-        overlaps: impl Fn(u32, &Bounds3) -> bool,
-        config: &GridConfig,
-    ) -> Self {
-        let all = (0..count as u32).fold(Bounds3::EMPTY, |all, i| all.union(bounds(i)));
+    /// Places `count` objects by their boxes, or more exactly.
+    pub(crate) fn build(count: usize, things: &impl Things, config: &GridConfig) -> Self {
+        let all = (0..count as u32).fold(Bounds3::EMPTY, |all, i| all.union(things.bounds(i)));
+        let most = MAX_ENTRIES.saturating_mul(count).min(u32::MAX as usize);
         let mut density = f64::from(config.density.clamp(1e-3, 1e3));
         loop {
             let mut grid = Self::empty(all, count, density);
             let mut cells: Vec<u32> = vec![0; grid.sides.iter().product()];
             let mut entries = 0;
-            let keep = |i: u32, cell: &Bounds3| !config.exact || overlaps(i, cell);
+            let keep = |i: u32, cell: &Bounds3| !config.exact || things.overlaps(i, cell);
             for i in 0..count as u32 {
-                grid.cells_of(&bounds(i), |cell, space| {
+                grid.cells_of(&things.bounds(i), |cell, space| {
                     if keep(i, space) {
                         cells[cell] += 1;
                         entries += 1;
                     }
                 });
-                if entries > MAX_ENTRIES * count {
+                if entries > most {
                     break;
                 }
             }
-            if entries > MAX_ENTRIES * count && grid.sides != [1; 3] {
+            if entries > most && grid.sides != [1; 3] {
                 density /= 8.0; // large objects, each in a great many cells
                 continue;
             }
@@ -94,7 +91,7 @@ impl Grid {
             let mut next = grid.starts.clone();
             let mut objects = std::mem::take(&mut grid.objects);
             for i in 0..count as u32 {
-                grid.cells_of(&bounds(i), |cell, space| {
+                grid.cells_of(&things.bounds(i), |cell, space| {
                     if keep(i, space) {
                         objects[next[cell] as usize] = i;
                         next[cell] += 1;
@@ -106,10 +103,12 @@ impl Grid {
     }
 
     fn empty(bounds: Bounds3, count: usize, density: f64) -> Self {
-        let size = if bounds.is_empty() { [0.0; 3] } else { (bounds.max - bounds.min).to_array() };
-        let longest = f64::from(size.into_iter().fold(f32::MIN_POSITIVE, f32::max));
+        // In double precision no extent is infinite.
+        let extent = |axis: usize| f64::from(bounds.max[axis]) - f64::from(bounds.min[axis]);
+        let size = if bounds.is_empty() { [0.0; 3] } else { [0, 1, 2].map(extent) };
+        let longest = size.into_iter().fold(f64::from(f32::MIN_POSITIVE), f64::max);
         // A flat scene has cells as if it were a little thick.
-        let size = size.map(|s| f64::from(s).max(longest * 1e-3));
+        let size = size.map(|s| s.max(longest * 1e-3));
         let edge = (size[0] * size[1] * size[2] / (density * count.max(1) as f64)).cbrt();
         let sides = size.map(|s| (s / edge).round().clamp(1.0, MAX_SIDE) as usize);
         Self { bounds, sides, starts: Vec::new(), objects: Vec::new(), count }
@@ -181,6 +180,11 @@ impl Grid {
         }
     }
 
+    /// What is in all lists.
+    pub(crate) fn objects(&self) -> &[u32] {
+        &self.objects
+    }
+
     /// Bytes of the lists.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.starts[..]) + size_of_val(&self.objects[..])
@@ -238,9 +242,10 @@ impl Line {
             forwards: d.map(|d| d > 0.0),
             crossing: [f64::INFINITY; 3],
             spacing: [f64::INFINITY; 3],
-            is_far: (0..3).any(|axis| {
-                (o[axis] - low[axis]).abs().max((o[axis] - high[axis]).abs()) > FAR * f64::from(size)
-            }),
+            is_far: !size.is_finite()
+                || (0..3).any(|axis| {
+                    (o[axis] - low[axis]).abs().max((o[axis] - high[axis]).abs()) > FAR * f64::from(size)
+                }),
         };
         for axis in 0..3 {
             let sides = grid.sides[axis] as f64;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use aureole_math::{Bounds3, Ray, Transform};
+use aureole_math::{Bounds3, Motion, Ray, Transform};
 
 use crate::World;
 
@@ -19,6 +19,13 @@ pub enum Geometry {
         /// Vertex indices, three a triangle.
         indices: Arc<[[u32; 3]]>,
     },
+    /// A triangle mesh whose vertices move in straight lines from key to key while the time of rays goes from 0 to 1.
+    MovingTriangles {
+        /// Vertices at equally spaced times, the first at 0 and the last at 1.
+        keys: Vec<Arc<[[f32; 3]]>>,
+        /// Vertex indices, three a triangle.
+        indices: Arc<[[u32; 3]]>,
+    },
     /// Boxes around shapes that the caller intersects.
     User(Vec<Bounds3>),
     /// The same where the shapes are balls that fill their boxes: structures that look closer put them into fewer places.
@@ -29,6 +36,13 @@ pub enum Geometry {
         level: Arc<World>,
         /// Where.
         world_from_object: Transform,
+    },
+    /// Another world that moves.
+    MovingInstance {
+        /// What is repeated.
+        level: Arc<World>,
+        /// Where, at which time.
+        world_from_object: Motion,
     },
 }
 
@@ -90,12 +104,21 @@ pub trait UserShapes {
     /// Whether [`accept`](Self::accept) is asked about every hit.
     const HAS_FILTER: bool = false;
 
+    /// Whether rays meet some geometries only: see [`Masked`](crate::Masked).
+    const HAS_MASK: bool = false;
+
     /// Intersects a primitive of a [`Geometry::User`] of the world with tag `level`; the ray is in that level's space.
     fn intersect(&self, level: u32, geometry: u32, primitive: u32, ray: &Ray) -> Option<UserHit>;
 
     /// Whether a hit counts: cut-outs say no.
     fn accept(&self, _level: u32, _hit: &Hit, _ray: &Ray) -> bool {
         true
+    }
+
+    /// The rays' mask.
+    #[inline(always)]
+    fn mask(&self) -> u32 {
+        u32::MAX
     }
 }
 

@@ -3,10 +3,11 @@
 use aureole_math::{Bounds3, Ray};
 
 use crate::binary;
-use crate::bvh::{self, Below, BinaryNode, BinaryTree, Bvh, Bvh8, CompactNode, Node16, Stats, VisitLeaf};
+use crate::bvh::{self, Below, BinaryNode, BinaryTree, Bvh, Bvh8, CompactNode, Leaf, Node16, VisitLeaf};
 use crate::grid::Grid;
-use crate::simd::Simd;
-use crate::{Config, Layout, Structure, Width};
+use crate::simd::{self, Kernel, Simd};
+use crate::things::Things;
+use crate::{Config, Layout, Stats, Structure, Width};
 
 /// A structure over things that its owner has packed in groups.
 #[derive(Clone, Debug)]
@@ -33,19 +34,12 @@ pub(crate) struct Indexed {
 }
 
 impl Index {
-    /// Builds the structure over `count` things. A group has up to `lanes` of them; `overlaps` says whether a thing is in a
-    /// box.
-    pub(crate) fn build(
-        count: usize,
-        bounds: impl Fn(u32) -> Bounds3 + Sync,
-        overlaps: impl Fn(u32, &Bounds3) -> bool,
-        lanes: usize,
-        config: &Config,
-    ) -> Indexed {
+    /// Builds the structure over `count` things. A group has up to `lanes` of them.
+    pub(crate) fn build(count: usize, things: &impl Things, lanes: usize, config: &Config) -> Indexed {
         let all = || (0..count as u32).collect();
         match config.structure {
             Structure::List => {
-                let box_around = (0..count as u32).fold(Bounds3::EMPTY, |b, i| b.union(bounds(i)));
+                let box_around = (0..count as u32).fold(Bounds3::EMPTY, |b, i| b.union(things.bounds(i)));
                 let groups: Vec<_> = (0..count as u32)
                     .step_by(lanes)
                     .map(|first| [first, (count as u32 - first).min(lanes as u32)])
@@ -57,7 +51,7 @@ impl Index {
                 }
             }
             Structure::Grid => {
-                let grid = Grid::build(count, bounds, overlaps, &config.grid);
+                let grid = Grid::build(count, things, &config.grid);
                 Indexed {
                     index: Self::Grid(grid),
                     order: all(),
@@ -65,7 +59,7 @@ impl Index {
                 }
             }
             Structure::Binary => {
-                let (mut tree, mut groups) = (bvh::build_binary(count, bounds, lanes), Vec::new());
+                let (mut tree, mut groups) = (bvh::build_binary(count, things, lanes), Vec::new());
                 for node in tree.nodes.iter_mut() {
                     if let Below::Items { first, count } = node.below() {
                         *node = BinaryNode::leaf(node.bounds, groups.len(), 1);
@@ -73,10 +67,11 @@ impl Index {
                     }
                 }
                 let order = std::mem::take(&mut tree.order).to_vec();
+                tree.built_sah_cost = tree.stats().sah_cost;
                 Indexed { index: Self::Binary(tree), order, groups }
             }
             Structure::Hierarchy => {
-                let built = bvh::build(count, bounds, lanes, config);
+                let built = bvh::build(count, things, lanes, config);
                 let index = match (config.layout, config.width) {
                     (Layout::Compact, _) => Self::Compact(Bvh::compacted(&built.bvh)),
                     (Layout::Fast, Width::Sixteen) => Self::Sixteen(Bvh::widened(&built.bvh)),
@@ -102,6 +97,22 @@ impl Index {
         }
     }
 
+    /// The same walk, compiled once for all visitors; `any` hit will do.
+    #[inline(never)]
+    pub(crate) fn walk_aside(
+        &self,
+        ray: &Ray,
+        t_max: f32,
+        any: bool,
+        visit: &mut dyn FnMut(usize, usize) -> Leaf,
+    ) {
+        if any {
+            simd::run(Aside { index: self, ray, t_max, visitor: Called::<true>(visit) });
+        } else {
+            simd::run(Aside { index: self, ray, t_max, visitor: Called::<false>(visit) });
+        }
+    }
+
     /// The box around everything.
     pub(crate) fn bounds(&self) -> Bounds3 {
         match self {
@@ -120,12 +131,39 @@ impl Index {
             Self::List { groups, .. } => Stats { leaves: *groups, ..Stats::default() },
             Self::Grid(grid) => {
                 let (cells, entries) = grid.cells_and_entries();
-                Stats { leaves: cells, primitives: entries, bytes: grid.bytes(), ..Stats::default() }
+                Stats { leaves: cells, references: entries, bytes: grid.bytes(), ..Stats::default() }
             }
-            Self::Binary(tree) => tree.stats(),
+            Self::Binary(tree) => Stats { sah_cost: tree.built_sah_cost, ..tree.stats() },
             Self::Wide(bvh) => Stats { bytes: size_of_val(&bvh.nodes[..]), ..bvh.stats },
             Self::Sixteen(bvh) => Stats { bytes: size_of_val(&bvh.nodes[..]), ..bvh.stats },
             Self::Compact(bvh) => Stats { bytes: size_of_val(&bvh.nodes[..]), ..bvh.stats },
         }
+    }
+}
+
+/// A visitor behind a pointer.
+struct Called<'a, const ANY: bool>(&'a mut dyn FnMut(usize, usize) -> Leaf);
+
+impl<const ANY: bool> VisitLeaf for Called<'_, ANY> {
+    const ANY: bool = ANY;
+
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf {
+        (self.0)(first, count)
+    }
+}
+
+struct Aside<'a, const ANY: bool> {
+    index: &'a Index,
+    ray: &'a Ray,
+    t_max: f32,
+    visitor: Called<'a, ANY>,
+}
+
+impl<const ANY: bool> Kernel for Aside<'_, ANY> {
+    type Output = ();
+    #[inline(always)]
+    fn run<S: Simd>(mut self) {
+        self.index.walk::<S, _>(self.ray, self.t_max, &mut self.visitor);
     }
 }

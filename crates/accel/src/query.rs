@@ -10,9 +10,9 @@ use aureole_math::Ray;
 
 use crate::bvh::{Leaf, VisitLeaf};
 use crate::caller::Caller;
+use crate::others;
 use crate::simd::{self, Floats, Kernel, Simd, lanes};
 use crate::triangle::{Block, Fast, LANES, TriangleTest, Watertight};
-use crate::world::Object;
 use crate::{Accuracy, Hit, NO_INSTANCE, UserShapes, World};
 
 /// Defines a query: a kernel for each of the two kinds of callers and triangle tests, compiled here for all callers.
@@ -33,7 +33,7 @@ macro_rules! query {
             fn filtered(world: &World, $($arg: $Arg,)* user: Caller<'_, true>) $(-> $Output)? {
                 by_accuracy(world, $($arg,)* user)
             }
-            if U::HAS_FILTER {
+            if U::HAS_FILTER || U::HAS_MASK {
                 filtered(world, $($arg,)* Caller::new(user))
             } else {
                 plain(world, $($arg,)* Caller::new(user))
@@ -113,53 +113,44 @@ fn closest<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, us
         world.triangles.walk::<S, _>(ray, ray.t_max, &mut among);
         best = among.best();
     }
-    if world.objects.is_empty() { best } else { closest_after_objects(world, ray, best, user) }
+    if world.has_others() { closest_after_objects::<T, U>(world, ray, best, user) } else { best }
+}
+
+/// The nearest of a hit and those with everything else.
+#[inline(always)]
+fn closest_after_objects<T: TriangleTest, U: UserShapes>(
+    world: &World,
+    ray: &Ray,
+    best: Hit,
+    user: &U,
+) -> Hit {
+    let t = if best.is_some() { best.t } else { ray.t_max };
+    let best = others::nearest::<T, U>(world, ray, Hit { t, ..best }, user);
+    if best.is_some() { best } else { Hit::NONE }
 }
 
 #[inline(always)]
 fn any<S: Simd, T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
-    let mut among = AnyTriangle { world, user, ray, test: T::new(ray), blocked: false };
-    world.triangles.walk::<S, _>(ray, ray.t_max, &mut among);
-    among.blocked || any_object(world, ray, user)
+    let mut triangle = AnyTriangle { world, user, ray, test: T::new(ray), blocked: false };
+    world.triangles.walk::<S, _>(ray, ray.t_max, &mut triangle);
+    triangle.blocked || any_object::<T, U>(world, ray, user)
 }
 
-/// The nearest of a hit and those with everything else. Like what else may be called more than once, compiled apart: the
-/// code for all structures is long.
-#[inline(never)]
-fn closest_after_objects<U: UserShapes>(world: &World, ray: &Ray, best: Hit, user: &U) -> Hit {
-    simd::run(ClosestAfter(world, ray, best, user))
+#[inline(always)]
+fn any_object<T: TriangleTest, U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
+    world.has_others() && others::any::<T, U>(world, ray, user)
 }
 
-struct ClosestAfter<'a, U>(&'a World, &'a Ray, Hit, &'a U);
-
-impl<U: UserShapes> Kernel for ClosestAfter<'_, U> {
-    type Output = Hit;
-    #[inline(always)]
-    fn run<S: Simd>(self) -> Hit {
-        let Self(world, ray, best, user) = self;
-        let t = if best.is_some() { best.t } else { ray.t_max };
-        let mut among = NearestObject { world, user, ray, best: Hit { t, ..best } };
-        world.object_index.walk::<S, _>(ray, t, &mut among);
-        if among.best.is_some() { among.best } else { Hit::NONE }
-    }
+/// Whether a hit counts: by the mask of its geometry and the caller's filter.
+#[inline(always)]
+pub(crate) fn accepts<U: UserShapes>(world: &World, user: &U, hit: &Hit, ray: &Ray) -> bool {
+    (!U::HAS_MASK || world.mask_of(hit.geometry) & user.mask() != 0)
+        && (!U::HAS_FILTER || user.accept(world.tag, hit, ray))
 }
 
-#[inline]
-fn any_object<U: UserShapes>(world: &World, ray: &Ray, user: &U) -> bool {
-    !world.objects.is_empty() && simd::run(AnyOther(world, ray, user))
-}
-
-struct AnyOther<'a, U>(&'a World, &'a Ray, &'a U);
-
-impl<U: UserShapes> Kernel for AnyOther<'_, U> {
-    type Output = bool;
-    #[inline(always)]
-    fn run<S: Simd>(self) -> bool {
-        let Self(world, ray, user) = self;
-        let mut object = AnyObject { world, user, ray, blocked: false };
-        world.object_index.walk::<S, _>(ray, ray.t_max, &mut object);
-        object.blocked
-    }
+#[inline(always)]
+fn is_accepted<U: UserShapes>(world: &World, user: &U, found: &Candidate, ray: &Ray) -> bool {
+    !(U::HAS_MASK || U::HAS_FILTER) || accepts(world, user, &found.hit(world), ray)
 }
 
 /// A hit with a triangle, by its number in the level.
@@ -216,9 +207,7 @@ impl<'a, U: UserShapes, T: TriangleTest> NearestTriangle<'a, U, T> {
 
     #[inline(always)]
     fn offer(&mut self, found: Candidate) {
-        let is_accepted =
-            || !U::HAS_FILTER || self.user.accept(self.world.tag, &found.hit(self.world), self.ray);
-        if found.beats(&self.nearest) && is_accepted() {
+        if found.beats(&self.nearest) && is_accepted(self.world, self.user, &found, self.ray) {
             self.nearest = found;
         }
     }
@@ -269,106 +258,13 @@ impl<U: UserShapes, T: TriangleTest> VisitLeaf for AnyTriangle<'_, U, T> {
             for i in lanes(hits.mask) {
                 let i = i % LANES;
                 let found = Candidate { t: t[i], u: u[i], v: v[i], id: block.ids[i] };
-                let is_accepted =
-                    || !U::HAS_FILTER || self.user.accept(self.world.tag, &found.hit(self.world), self.ray);
-                if found.t < self.ray.t_max && is_accepted() {
+                if found.t < self.ray.t_max && is_accepted(self.world, self.user, &found, self.ray) {
                     self.blocked = true;
                     return Leaf::Stop;
                 }
             }
         }
         Leaf::Continue(self.ray.t_max)
-    }
-}
-
-/// The search for the nearest of the other things, after that among triangles.
-struct NearestObject<'a, U> {
-    world: &'a World,
-    user: &'a U,
-    ray: &'a Ray,
-    best: Hit,
-}
-
-impl<U: UserShapes> NearestObject<'_, U> {
-    /// Takes a hit when it is nearer than the best one and accepted. The ray's own end does not count as a hit.
-    fn offer(&mut self, hit: Hit) {
-        let is_accepted = || !U::HAS_FILTER || self.user.accept(self.world.tag, &hit, self.ray);
-        if hit.t < self.ray.t_max && hit.beats(&self.best) && is_accepted() {
-            self.best = hit;
-        }
-    }
-
-    fn object(&mut self, object: &Object) {
-        // One step beyond the best hit, so that an equally near thing can win by its number.
-        let until_best = self.best.t.next_up().min(self.ray.t_max);
-        match object {
-            Object::User { geometry, primitive } | Object::Ball { geometry, primitive } => {
-                let (geometry, primitive) = (*geometry, *primitive);
-                let ray = self.ray.until(until_best);
-                if let Some(found) = self.user.intersect(self.world.tag, geometry, primitive, &ray) {
-                    let (t, u, v) = (found.t, found.u, found.v);
-                    self.offer(Hit { t, u, v, primitive, geometry, instance: NO_INSTANCE });
-                }
-            }
-            Object::Instance { geometry, level, object_from_world } => {
-                let local = object_from_world.ray(self.ray).until(until_best);
-                if let Some(inner) = level.closest_hit(&local, self.user) {
-                    let hit = Hit { instance: *geometry, ..inner };
-                    if hit.beats(&self.best) {
-                        self.best = hit;
-                    }
-                }
-            }
-        }
-    }
-}
-
-impl<U: UserShapes> VisitLeaf for NearestObject<'_, U> {
-    const ANY: bool = false;
-
-    #[inline(always)]
-    fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf {
-        for object in &self.world.objects[first..first + count] {
-            self.object(object);
-        }
-        Leaf::Continue(self.best.t)
-    }
-}
-
-/// The search for any of the other things.
-struct AnyObject<'a, U> {
-    world: &'a World,
-    user: &'a U,
-    ray: &'a Ray,
-    blocked: bool,
-}
-
-impl<U: UserShapes> AnyObject<'_, U> {
-    fn object(&self, object: &Object) -> bool {
-        let (ray, user, level_tag) = (self.ray, self.user, self.world.tag);
-        match object {
-            Object::User { geometry, primitive } | Object::Ball { geometry, primitive } => {
-                let (geometry, primitive) = (*geometry, *primitive);
-                user.intersect(level_tag, geometry, primitive, ray).is_some_and(|found| {
-                    let (t, u, v) = (found.t, found.u, found.v);
-                    let hit = Hit { t, u, v, primitive, geometry, instance: NO_INSTANCE };
-                    t < ray.t_max && (!U::HAS_FILTER || user.accept(level_tag, &hit, ray))
-                })
-            }
-            Object::Instance { level, object_from_world, .. } => {
-                level.occluded(&object_from_world.ray(ray), user)
-            }
-        }
-    }
-}
-
-impl<U: UserShapes> VisitLeaf for AnyObject<'_, U> {
-    const ANY: bool = true;
-
-    #[inline(always)]
-    fn visit<S: Simd>(&mut self, first: usize, count: usize) -> Leaf {
-        self.blocked = self.world.objects[first..first + count].iter().any(|object| self.object(object));
-        if self.blocked { Leaf::Stop } else { Leaf::Continue(self.ray.t_max) }
     }
 }
 

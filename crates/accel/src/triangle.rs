@@ -1,9 +1,11 @@
 //! Ray-triangle tests, several triangles at a time.
 
 mod fast;
+mod moving;
 mod watertight;
 
 pub(crate) use fast::Fast;
+pub(crate) use moving::{FoundHits, MovingBlock};
 pub(crate) use watertight::Watertight;
 
 use aureole_math::Ray;
@@ -49,6 +51,18 @@ impl Block {
     }
 }
 
+impl Block {
+    /// The corners of one of the triangles, to within rounding.
+    pub(crate) fn vertices(&self, accuracy: Accuracy, lane: usize) -> [[f32; 3]; 3] {
+        let [a, b, c] = self.corners.map(|corner| corner.map(|axis| axis[lane]));
+        let from_a = |edge: [f32; 3]| [a[0] + edge[0], a[1] + edge[1], a[2] + edge[2]];
+        match accuracy {
+            Accuracy::Watertight => [a, b, c],
+            Accuracy::Fast => [a, from_a(b), from_a(c)],
+        }
+    }
+}
+
 /// A bit for each of some tests that found a hit, and where.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hits<F> {
@@ -75,6 +89,9 @@ pub(crate) trait TriangleTest: Copy {
     /// What a block keeps of a triangle.
     fn prepare(vertices: [[f32; 3]; 3]) -> [[f32; 3]; 3];
 
+    /// The same of eight triangles at once.
+    fn prepare_lanes<F: Floats<LANES>>(vertices: [[F; 3]; 3]) -> [[F; 3]; 3];
+
     fn new(ray: &Ray) -> Self;
 
     /// The rays of a packet, if they can be tested together.
@@ -88,6 +105,9 @@ pub(crate) trait TriangleTest: Copy {
 
     /// The hits of the ray with the triangles of a block in `(t_min, t_max]`.
     fn intersect<S: Simd>(&self, block: &Block, t_max: f32) -> Hits<S::F8>;
+
+    /// The same with triangles that move, when a share of the interval has gone by.
+    fn intersect_moving(&self, block: &MovingBlock, share: f32, t_max: f32) -> FoundHits;
 
     /// The hits of rays, up to their ends, with one triangle of a block.
     fn intersect_rays<S: Simd>(

@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
-use aureole_math::{Bounds3, Point3, Ray, Transform};
+use aureole_math::{Bounds3, Motion, Point3, Ray, Transform};
 
 use crate::blocks::{Blocks, Meshes};
-use crate::bvh::Stats;
+use crate::bvh::MAX_ITEMS;
 use crate::index::{Index, Indexed};
-use crate::overlap::{ball_overlaps_box, triangle_overlaps_box};
+use crate::moving::Moving;
+use crate::overlap::ball_overlaps_box;
+use crate::things::Things;
 use crate::triangle::LANES;
 use crate::{AccelError, Accuracy, Config, Geometry, Hit, Layout, Structure, UserShapes, query};
 
@@ -17,20 +19,39 @@ pub(crate) enum Object {
     User { geometry: u32, primitive: u32 },
     Ball { geometry: u32, primitive: u32 },
     Instance { geometry: u32, level: Arc<World>, object_from_world: Transform },
+    MovingInstance { geometry: u32, level: Arc<World>, world_from_object: Box<Motion> },
+}
+
+impl Object {
+    pub(crate) fn geometry(&self) -> u32 {
+        match self {
+            Self::User { geometry, .. }
+            | Self::Ball { geometry, .. }
+            | Self::Instance { geometry, .. }
+            | Self::MovingInstance { geometry, .. } => *geometry,
+        }
+    }
 }
 
 /// Geometries ready for rays.
 #[derive(Clone, Debug)]
 pub struct World {
     pub(crate) tag: u32,
-    bounds: Bounds3,
+    pub(crate) bounds: Bounds3,
     pub(crate) triangles: Index,
     pub(crate) blocks: Blocks,
     /// For each mesh, the number of its first triangle and its geometry.
-    meshes: Vec<[u32; 2]>,
+    pub(crate) meshes: Vec<[u32; 2]>,
+    pub(crate) moving: Vec<Moving>,
     pub(crate) object_index: Index,
     pub(crate) objects: Vec<Object>,
+    triangle_count: usize,
     pub(crate) accuracy: Accuracy,
+    pub(crate) config: Config,
+    /// The kind of each geometry and how many primitives it has.
+    pub(crate) numbers: Vec<[usize; 2]>,
+    /// A mask for each geometry; all ones beyond the end.
+    pub(crate) masks: Vec<u32>,
 }
 
 impl World {
@@ -45,40 +66,55 @@ impl World {
             triangles: Index::List { bounds: Bounds3::EMPTY, groups: 0 },
             blocks: Blocks::default(),
             meshes: Vec::new(),
+            moving: Moving::build_all(&geometries, config)?,
             object_index: Index::List { bounds: Bounds3::EMPTY, groups: 0 },
             objects: Vec::new(),
+            triangle_count: 0,
             accuracy: config.accuracy,
+            config: *config,
+            numbers: geometries.iter().map(Self::kind_and_number).collect(),
+            masks: Vec::new(),
         };
+        world.bounds = world.moving.iter().fold(Bounds3::EMPTY, |all, moving| all.union(moving.bounds()));
         world.build_triangles(&geometries, config)?;
         world.build_objects(geometries, config)?;
         Ok(world)
     }
 
+    /// The same world, in which [`Masked`](crate::Masked) queries meet the geometries whose mask has a bit in common with
+    /// theirs. Geometries beyond the end of the list have all bits; a mask can be changed at any time.
+    #[must_use]
+    pub fn with_masks(self, masks: Vec<u32>) -> Self {
+        Self { masks, ..self }
+    }
+
+    /// Whether there is anything but triangles at rest.
+    #[inline(always)]
+    pub(crate) fn has_others(&self) -> bool {
+        !(self.moving.is_empty() && self.objects.is_empty())
+    }
+
+    #[inline]
+    pub(crate) fn mask_of(&self, geometry: u32) -> u32 {
+        self.masks.get(geometry as usize).copied().unwrap_or(u32::MAX)
+    }
+
     fn build_triangles(&mut self, geometries: &[Geometry], config: &Config) -> Result<(), AccelError> {
-        let mut meshes = Vec::new();
-        let mut kept = Meshes::new(config.accuracy);
+        let mut meshes = Meshes::new(config.accuracy);
         let mut count = 0;
         for (g, geometry) in geometries.iter().enumerate() {
             let Geometry::Triangles { positions, indices } = geometry else { continue };
             check_mesh(g, positions, indices)?;
             self.meshes.push([count as u32, g as u32]);
-            kept.push(count as u32, positions, indices);
-            meshes.push((positions, indices));
+            meshes.push(count as u32, positions, indices);
             count += indices.len();
             check_count(count)?;
         }
-        let starts = &self.meshes;
-        let triangle = |id: u32| {
-            let mesh = starts.partition_point(|[first, _]| *first <= id) - 1;
-            let (positions, indices) = meshes[mesh];
-            indices[(id - starts[mesh][0]) as usize].map(|i| positions[i as usize])
-        };
-        let bounds = |id: u32| Bounds3::around(triangle(id).map(Point3::from));
-        let overlaps = |id: u32, cell: &Bounds3| triangle_overlaps_box(triangle(id).map(Point3::from), cell);
-        let Indexed { index, order, groups } = Index::build(count, bounds, overlaps, LANES, config);
+        self.triangle_count = count;
+        let Indexed { index, order, groups } = Index::build(count, &meshes, LANES, config);
         self.blocks = match (config.structure, config.layout) {
-            (Structure::Hierarchy, Layout::Compact) => Blocks::numbers(kept, &order, &groups),
-            _ => Blocks::ready(&kept, &order, &groups),
+            (Structure::Hierarchy, Layout::Compact) => Blocks::numbers(meshes, &order, &groups),
+            _ => Blocks::ready(&meshes, &order, &groups),
         };
         self.bounds = self.bounds.union(index.bounds());
         self.triangles = index;
@@ -101,7 +137,7 @@ impl World {
         for (g, geometry) in geometries.into_iter().enumerate() {
             let geometry_id = g as u32;
             match geometry {
-                Geometry::Triangles { .. } => {}
+                Geometry::Triangles { .. } | Geometry::MovingTriangles { .. } => {}
                 Geometry::User(list) => {
                     let user = |primitive| Object::User { geometry: geometry_id, primitive };
                     all.extend((0..list.len() as u32).map(user));
@@ -117,26 +153,25 @@ impl World {
                     if bounds.is_empty() {
                         continue;
                     }
-                    if !(bounds.min.is_finite() && bounds.max.is_finite()) {
-                        return Err(AccelError::NonFinite { geometry: g, count: 1 });
-                    }
-                    boxes.push(bounds);
+                    boxes.extend(checked(vec![bounds], g)?);
                     let object_from_world = world_from_object.inverse();
                     all.push(Object::Instance { geometry: geometry_id, level, object_from_world });
+                }
+                Geometry::MovingInstance { level, world_from_object } => {
+                    let bounds = world_from_object.bounds(&level.bounds);
+                    if bounds.is_empty() {
+                        continue;
+                    }
+                    boxes.extend(checked(vec![bounds], g)?);
+                    let world_from_object = Box::new(world_from_object);
+                    all.push(Object::MovingInstance { geometry: geometry_id, level, world_from_object });
                 }
             }
         }
         check_count(boxes.len())?;
         self.bounds = boxes.iter().fold(self.bounds, |b, other| b.union(*other));
-        let overlaps = |i: u32, cell: &Bounds3| match all[i as usize] {
-            Object::Ball { .. } => {
-                let [low, high] = [boxes[i as usize].min, boxes[i as usize].max];
-                ball_overlaps_box(low + (high - low) * 0.5, 0.5 * (high - low).max_element(), cell)
-            }
-            _ => true,
-        };
-        let Indexed { index, order, .. } =
-            Index::build(boxes.len(), |i| boxes[i as usize], overlaps, 1, config);
+        let others = Others { objects: &all, boxes: &boxes };
+        let Indexed { index, order, .. } = Index::build(boxes.len(), &others, 1, config);
         self.objects = order.iter().map(|&i| all[i as usize].clone()).collect();
         self.object_index = index;
         Ok(())
@@ -147,11 +182,8 @@ impl World {
         self.bounds
     }
 
-    /// Figures about the hierarchies of this level.
-    pub fn stats(&self) -> Stats {
-        let bytes = self.blocks.bytes() + size_of_val(&self.objects[..]);
-        let stats = self.triangles.stats().merged(self.object_index.stats());
-        Stats { bytes: stats.bytes + bytes, ..stats }
+    pub(crate) fn triangle_count(&self) -> usize {
+        self.triangle_count
     }
 
     /// The nearest hit of a ray in `(t_min, t_max)`.
@@ -178,17 +210,39 @@ impl World {
     }
 }
 
-/// Leaves name their first item in 27 bits.
-fn check_count(items: usize) -> Result<(), AccelError> {
-    if items < 1 << 27 { Ok(()) } else { Err(AccelError::TooMany(items as u64)) }
+/// Everything else.
+struct Others<'a> {
+    objects: &'a [Object],
+    boxes: &'a [Bounds3],
 }
 
-fn checked(boxes: Vec<Bounds3>, geometry: usize) -> Result<Vec<Bounds3>, AccelError> {
+impl Things for Others<'_> {
+    fn bounds(&self, id: u32) -> Bounds3 {
+        self.boxes[id as usize]
+    }
+
+    fn overlaps(&self, id: u32, cell: &Bounds3) -> bool {
+        let Bounds3 { min, max } = self.boxes[id as usize];
+        let is_ball = matches!(self.objects[id as usize], Object::Ball { .. });
+        !is_ball || ball_overlaps_box(min + (max - min) * 0.5, 0.5 * (max - min).max_element(), cell)
+    }
+}
+
+/// Leaves name their first item in 27 bits.
+pub(crate) fn check_count(items: usize) -> Result<(), AccelError> {
+    if items < MAX_ITEMS { Ok(()) } else { Err(AccelError::TooMany(items as u64)) }
+}
+
+pub(crate) fn checked(boxes: Vec<Bounds3>, geometry: usize) -> Result<Vec<Bounds3>, AccelError> {
     let count = boxes.iter().filter(|b| !b.min.is_finite() || !b.max.is_finite()).count();
     if count == 0 { Ok(boxes) } else { Err(AccelError::NonFinite { geometry, count }) }
 }
 
-fn check_mesh(geometry: usize, positions: &[[f32; 3]], indices: &[[u32; 3]]) -> Result<(), AccelError> {
+pub(crate) fn check_mesh(
+    geometry: usize,
+    positions: &[[f32; 3]],
+    indices: &[[u32; 3]],
+) -> Result<(), AccelError> {
     let broken = positions.iter().filter(|p| !Point3::from(**p).is_finite()).count();
     if broken > 0 {
         return Err(AccelError::NonFinite { geometry, count: broken });

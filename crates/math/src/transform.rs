@@ -32,7 +32,7 @@ impl Transform {
         inverse: Mat4::IDENTITY,
     };
 
-    fn of(exact: DMat4, exact_inverse: DMat4) -> Self {
+    pub(crate) fn of(exact: DMat4, exact_inverse: DMat4) -> Self {
         Self { exact, exact_inverse, matrix: exact.as_mat4(), inverse: exact_inverse.as_mat4() }
     }
 

@@ -322,9 +322,9 @@ impl Scene {
         self.world.bounds()
     }
 
-    /// Figures about the acceleration of the top level.
-    pub fn accel_stats(&self) -> Stats {
-        self.world.stats()
+    /// Figures about the acceleration of each level: the top one, then the groups.
+    pub fn accel_stats(&self) -> Vec<Stats> {
+        self.world.stats_of_levels().into_iter().map(|(_, stats)| stats).collect()
     }
 
     /// How many there are of what.

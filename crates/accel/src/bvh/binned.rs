@@ -33,6 +33,32 @@ impl Cut for Binned {
     }
 }
 
+/// A cut by bins: what it costs and the boxes of its sides.
+pub(super) struct Cheapest {
+    pub cost: f32,
+    pub extents: [Extent; 2],
+    binning: Binning,
+    axis: usize,
+    bin: usize,
+}
+
+/// The cheapest cut of items. `None` when all centers are in one place.
+pub(super) fn best(items: &[Item]) -> Option<Cheapest> {
+    let binning = Binning::new(&centers(items), items.len())?;
+    let bins = binning.fill::<BINS>(items);
+    let (cost, axis, bin) = binning.cheapest(&bins);
+    let around = |boxes: &[Extent]| boxes.iter().fold(Extent::EMPTY, |all, extent| all.union(extent));
+    let (left, right) = bins.boxes[axis].split_at(bin);
+    Some(Cheapest { cost, extents: [around(left), around(right)], binning, axis, bin })
+}
+
+impl Cheapest {
+    /// Moves the items of one side to the front; their number.
+    pub(super) fn apply(&self, items: &mut [Item]) -> usize {
+        self.binning.partition(items, self.axis, self.bin)
+    }
+}
+
 /// The box around the items' centers.
 fn centers(items: &[Item]) -> Extent {
     let of = |items: &[Item]| items.iter().fold(Extent::EMPTY, |extent, item| extent.with(item.center()));
@@ -115,11 +141,15 @@ impl Binning {
 
     /// Moves the items of one side of the cheapest cut to the front; their number.
     fn cut(&self, items: &mut [Item]) -> usize {
-        let (axis, bin) = if self.bins > FEW_BINS {
+        let (_, axis, bin) = if self.bins > FEW_BINS {
             self.cheapest(&self.fill::<BINS>(items))
         } else {
             self.cheapest(&self.fill::<FEW_BINS>(items))
         };
+        self.partition(items, axis, bin)
+    }
+
+    fn partition(&self, items: &mut [Item], axis: usize, bin: usize) -> usize {
         let mut middle = 0;
         for i in 0..items.len() {
             let is_left = self.bin_on(&items[i], axis) < bin;
@@ -147,8 +177,8 @@ impl Binning {
         parts.into_iter().reduce(|a, b| a.merged(&b)).unwrap_or_else(|| of(&[]))
     }
 
-    /// The axis and first bin of the right side with the smallest sum of area times number.
-    fn cheapest<const B: usize>(&self, bins: &Bins<B>) -> (usize, usize) {
+    /// The smallest sum of area times number, the axis and the first bin of the right side.
+    fn cheapest<const B: usize>(&self, bins: &Bins<B>) -> (f32, usize, usize) {
         let mut best = (f32::INFINITY, 0, 1);
         for axis in (0..3).filter(|&axis| self.scale[axis] > 0.0) {
             let (boxes, counts) = (&bins.boxes[axis][..self.bins], &bins.counts[axis][..self.bins]);
@@ -170,7 +200,7 @@ impl Binning {
                 }
             }
         }
-        (best.1, best.2)
+        best
     }
 }
 

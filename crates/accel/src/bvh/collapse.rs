@@ -8,8 +8,9 @@ use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
 use super::build::Built;
-use super::node::{Bvh8, COUNT_BITS, LEAF, Node, Stats, WIDTH};
-use super::tree::{Below, BinaryNode, BinaryTree};
+use super::node::{Bvh8, COUNT_BITS, LEAF, Node, WIDTH};
+use super::tree::{Below, BinaryTree};
+use crate::Stats;
 use crate::big::Big;
 
 /// What things cost, in visits of a node.
@@ -53,20 +54,21 @@ pub(crate) fn collapse(tree: BinaryTree, costs: &Costs) -> Built {
     let mut part = Part::default();
     if let Some(root) = tree.nodes.first() {
         let mut subtrees = Big::<Subtree>::zeroed(tree.nodes.len());
-        evaluate(&tree.nodes, 0, costs, &mut subtrees);
+        evaluate(&tree, 0, costs, &mut subtrees);
         part = Collapse { tree: &tree, costs, subtrees: &subtrees }.part(0);
         part.stats.nodes = part.nodes.len();
         part.stats.sah_cost /= root.half_area().max(f32::MIN_POSITIVE);
     }
     Built {
         bvh: Bvh8 { nodes: part.nodes.into(), stats: part.stats },
-        order: tree.order,
+        order: if tree.copies { part.order.into() } else { tree.order },
         groups: part.groups,
     }
 }
 
 /// Evaluates the subtree of node `at` and all in it; `into` is for them alone.
-fn evaluate(nodes: &[BinaryNode], at: usize, costs: &Costs, into: &mut [Subtree]) {
+fn evaluate(tree: &BinaryTree, at: usize, costs: &Costs, into: &mut [Subtree]) {
+    let nodes = &tree.nodes;
     let area = nodes[at].half_area();
     let (top, rest) = into.split_at_mut(1);
     top[0] = match nodes[at].below() {
@@ -77,23 +79,35 @@ fn evaluate(nodes: &[BinaryNode], at: usize, costs: &Costs, into: &mut [Subtree]
             let (left_into, right_into) = rest.split_at_mut(right - left);
             if left_into.len().min(right_into.len()) > PARALLEL as usize {
                 rayon::join(
-                    || evaluate(nodes, left, costs, left_into),
-                    || evaluate(nodes, right, costs, right_into),
+                    || evaluate(tree, left, costs, left_into),
+                    || evaluate(tree, right, costs, right_into),
                 );
             } else {
-                evaluate(nodes, left, costs, left_into);
-                evaluate(nodes, right, costs, right_into);
+                evaluate(tree, left, costs, left_into);
+                evaluate(tree, right, costs, right_into);
             }
             let (left, right) = (&left_into[0], &right_into[0]);
             let count = left.count + right.count;
             let mut cost = [0.0; WIDTH - 1];
-            cost[0] = costs.leaf(area, count as usize).min(area + cheapest_shares(left, right, WIDTH).0);
+            let items = distinct(tree, left.first, count, costs);
+            cost[0] = costs.leaf(area, items).min(area + cheapest_shares(left, right, WIDTH).0);
             for children in 2..WIDTH {
                 cost[children - 1] = cost[children - 2].min(cheapest_shares(left, right, children).0);
             }
             Subtree { cost, first: left.first, count }
         }
     };
+}
+
+/// How many items a leaf over these would have: copies of one item that come together are one again.
+#[inline(always)]
+fn distinct(tree: &BinaryTree, first: u32, count: u32, costs: &Costs) -> usize {
+    // More than twice as many as fit into a leaf are no leaf: an item is not often there more than twice.
+    if !tree.copies || count as usize > 2 * costs.lanes * costs.max_groups {
+        return count as usize;
+    }
+    let items = &tree.order[first as usize..(first + count) as usize];
+    (0..items.len()).filter(|&i| !items[..i].contains(&items[i])).count()
 }
 
 /// The least cost of sharing out `children` children to two subtrees, and how many the left one gets.
@@ -114,6 +128,8 @@ fn cheapest_shares(left: &Subtree, right: &Subtree, children: usize) -> (f32, us
 struct Part {
     nodes: Vec<Node>,
     groups: Vec<[u32; 2]>,
+    /// The items of the leaves, where they are not simply those of the tree.
+    order: Vec<u32>,
     stats: Stats,
 }
 
@@ -122,7 +138,9 @@ impl Part {
     fn append(&mut self, other: Self) -> u32 {
         let (nodes, groups) = (self.nodes.len() as u32, self.groups.len() as u32);
         self.nodes.extend(other.nodes.into_iter().map(|node| node.moved(nodes, groups)));
-        self.groups.extend(other.groups);
+        let items = self.order.len() as u32;
+        self.groups.extend(other.groups.into_iter().map(|[first, count]| [first + items, count]));
+        self.order.extend(other.order);
         self.stats = self.stats.merged(other.stats);
         nodes
     }
@@ -202,14 +220,23 @@ impl Collapse<'_> {
     /// The cost of a child as a leaf, if it is to be one.
     fn leaf(&self, child: usize) -> Option<f32> {
         let (node, subtree) = (&self.tree.nodes[child], &self.subtrees[child]);
-        let cost = self.costs.leaf(node.half_area(), subtree.count as usize);
-        (matches!(node.below(), Below::Items { .. }) || cost <= subtree.cost[0]).then_some(cost)
+        let items = distinct(self.tree, subtree.first, subtree.count, self.costs);
+        let cost = self.costs.leaf(node.half_area(), items);
+        let pays = cost.is_finite() && cost <= subtree.cost[0];
+        (matches!(node.below(), Below::Items { .. }) || pays).then_some(cost)
     }
 
     fn add_leaf(&self, child: usize, cost: f32, part: &mut Part) -> u32 {
-        let Subtree { first, count, .. } = self.subtrees[child];
+        let Subtree { mut first, mut count, .. } = self.subtrees[child];
+        if self.tree.copies {
+            let items = &self.tree.order[first as usize..(first + count) as usize];
+            first = part.order.len() as u32;
+            let is_new = |i: &usize| !items[..*i].contains(&items[*i]);
+            part.order.extend((0..items.len()).filter(is_new).map(|i| items[i]));
+            count = part.order.len() as u32 - first;
+        }
         part.stats.leaves += 1;
-        part.stats.primitives += count as usize;
+        part.stats.references += count as usize;
         part.stats.sah_cost += cost;
         let place = part.groups.len() as u32;
         let (end, lanes) = (first + count, self.costs.lanes);

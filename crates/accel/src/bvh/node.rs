@@ -4,6 +4,7 @@ use aureole_math::{Bounds3, Point3};
 use bytemuck::{Pod, Zeroable};
 
 use super::wide::Wide;
+use crate::Stats;
 use crate::big::Big;
 
 /// Children per node.
@@ -41,6 +42,12 @@ impl Node {
         }
     }
 
+    /// The box in a slot.
+    pub(crate) fn bounds(&self, slot: usize) -> Bounds3 {
+        let side = |side: usize| Point3::from([0, 1, 2].map(|axis| self.planes[axis][side][slot]));
+        Bounds3 { min: side(0), max: side(1) }
+    }
+
     /// The same node in a hierarchy in which nodes and packed things have higher numbers.
     pub(crate) fn moved(mut self, nodes: u32, packed: u32) -> Self {
         for child in &mut self.children {
@@ -76,36 +83,5 @@ impl<N: Pod> Bvh<N> {
                 [0, 1].map(|side| Point3::from([0, 1, 2].map(|axis| root.plane(axis, side, slot))));
             bounds.union(Bounds3 { min, max })
         })
-    }
-}
-
-/// Figures about a hierarchy.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Stats {
-    /// Expected cost of a ray that meets the root, in primitive tests [MacDonald and Booth 1990].
-    pub sah_cost: f32,
-    /// Nodes.
-    pub nodes: usize,
-    /// Leaves.
-    pub leaves: usize,
-    /// Longest way from the root to a leaf.
-    pub depth: usize,
-    /// Primitives, counted once for each leaf that holds them.
-    pub primitives: usize,
-    /// Bytes of nodes and leaves.
-    pub bytes: usize,
-}
-
-impl Stats {
-    /// Both structures together.
-    pub(crate) fn merged(self, other: Self) -> Self {
-        Self {
-            sah_cost: self.sah_cost + other.sah_cost,
-            nodes: self.nodes + other.nodes,
-            leaves: self.leaves + other.leaves,
-            depth: self.depth.max(other.depth),
-            primitives: self.primitives + other.primitives,
-            bytes: self.bytes + other.bytes,
-        }
     }
 }

@@ -168,7 +168,12 @@ impl Linked {
                 *node = BinaryNode::inner(node.bounds, i + 1, right);
             }
         }
-        BinaryTree { nodes: Big::from(nodes), order: Big::from(order) }
+        BinaryTree {
+            nodes: Big::from(nodes),
+            order: Big::from(order),
+            copies: before.copies,
+            ..BinaryTree::default()
+        }
     }
 }
 

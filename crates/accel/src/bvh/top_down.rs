@@ -7,7 +7,7 @@ use super::tree::{BinaryNode, BinaryTree, Extent, FREE_LEVELS, Item};
 use crate::big::Big;
 
 /// Items from which two threads pay.
-const PARALLEL: usize = 1 << 14;
+pub(super) const PARALLEL: usize = 1 << 14;
 
 /// A way to cut.
 pub(super) trait Cut: Sync {
@@ -25,7 +25,7 @@ pub(super) fn build(mut items: Big<Item>, leaf_size: usize, cut: &impl Cut) -> B
     top.place(&mut nodes, 0);
     let mut order = Big::zeroed(items.len());
     order.par_iter_mut().zip(&items[..]).for_each(|(number, item)| *number = item.index());
-    BinaryTree { nodes, order }
+    BinaryTree { nodes, order, ..BinaryTree::default() }
 }
 
 /// The upper part of a tree, whose halves come from different threads.
@@ -74,9 +74,9 @@ impl Top {
     }
 }
 
-struct Builder<'a, C> {
-    leaf_size: usize,
-    cut: &'a C,
+pub(super) struct Builder<'a, C> {
+    pub leaf_size: usize,
+    pub cut: &'a C,
 }
 
 impl<C: Cut> Builder<'_, C> {
@@ -98,7 +98,13 @@ impl<C: Cut> Builder<'_, C> {
     }
 
     /// Appends the tree over items; the box around them.
-    fn split(&self, items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<BinaryNode>) -> Extent {
+    pub(super) fn split(
+        &self,
+        items: &mut [Item],
+        first: usize,
+        depth: usize,
+        nodes: &mut Vec<BinaryNode>,
+    ) -> Extent {
         if items.len() <= self.leaf_size {
             let extent = items.iter().fold(Extent::EMPTY, |extent, item| extent.union(&item.bounds()));
             nodes.push(BinaryNode::leaf(extent.bounds(), first, items.len()));

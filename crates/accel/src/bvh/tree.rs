@@ -4,9 +4,11 @@ use aureole_math::{Bounds3, Point3};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
 
-use super::node::Stats;
+use crate::Stats;
 use crate::big::Big;
 
+/// Larger areas count as this one, so that no sum of costs becomes infinite.
+const MAX_AREA: f32 = 1e28;
 /// Marks a leaf.
 const LEAF: u32 = 1 << 31;
 /// Levels of the binary tree that may be cut anywhere; below them lists are halved, since a hostile input could make a tree
@@ -79,7 +81,16 @@ impl Extent {
     #[inline(always)]
     pub(crate) fn half_area(&self) -> f32 {
         let d = (self.max - self.min).max(Vec4::ZERO);
-        d.x * (d.y + d.z) + d.y * d.z
+        (d.x * (d.y + d.z) + d.y * d.z).min(MAX_AREA)
+    }
+
+    /// What is in both.
+    pub(crate) fn intersection(&self, other: &Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.min.truncate().cmpgt(self.max.truncate()).any()
     }
 
     pub(crate) fn bounds(&self) -> Bounds3 {
@@ -125,6 +136,14 @@ impl BinaryNode {
         }
     }
 
+    /// The same node in a tree that has more nodes and more items before it.
+    pub(crate) fn moved_by(self, nodes: usize, items: usize) -> Self {
+        match self.below() {
+            Below::Nodes(left, right) => Self::inner(self.bounds, left + nodes, right + nodes),
+            Below::Items { first, count } => Self::leaf(self.bounds, first + items, count),
+        }
+    }
+
     #[inline]
     pub(crate) fn below(&self) -> Below {
         let [a, b] = self.links.map(|link| link as usize);
@@ -139,7 +158,7 @@ impl BinaryNode {
     #[inline]
     pub(crate) fn half_area(&self) -> f32 {
         let d = self.bounds.max - self.bounds.min;
-        d.x * (d.y + d.z) + d.y * d.z
+        (d.x * (d.y + d.z) + d.y * d.z).min(MAX_AREA)
     }
 }
 
@@ -150,6 +169,10 @@ pub(crate) struct BinaryTree {
     pub nodes: Big<BinaryNode>,
     /// The primitives of the leaves.
     pub order: Big<u32>,
+    /// Whether some primitives are in several leaves.
+    pub copies: bool,
+    /// What a ray was expected to cost when the tree was built.
+    pub built_sah_cost: f32,
 }
 
 impl BinaryTree {

@@ -137,6 +137,6 @@ impl Bvh<Node16> {
             at += 1;
         }
         let nodes = crate::big::Big::from(nodes);
-        Self { stats: super::Stats { nodes: nodes.len(), ..bvh.stats }, nodes }
+        Self { stats: crate::Stats { nodes: nodes.len(), ..bvh.stats }, nodes }
     }
 }

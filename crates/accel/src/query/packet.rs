@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use aureole_math::Ray;
 
-use super::{Candidate, ClosestOne, OccludedOne, any_object, closest_after_objects};
+use super::{Candidate, ClosestOne, OccludedOne, any_object, closest_after_objects, is_accepted};
 use crate::bvh::{Bvh8, Outline, PACKET, Packet, VisitPacket};
 use crate::index::Index;
 use crate::simd::{self, Floats, Mask, Simd, lanes};
@@ -28,7 +28,7 @@ pub(super) fn closest_of<S: Simd, T: TriangleTest, U: UserShapes>(
 ) {
     if all_miss::<S>(world, rays) {
         hits.fill(Hit::NONE);
-        closest_objects_of(world, rays, hits, user);
+        closest_objects_of::<T, U>(world, rays, hits, user);
         return;
     }
     for (rays, hits) in rays.chunks(PACKET).zip(hits.chunks_mut(PACKET)) {
@@ -48,15 +48,15 @@ pub(super) fn closest_of<S: Simd, T: TriangleTest, U: UserShapes>(
                 }
             }
             if alone == 0 {
-                closest_objects_of(world, rays, hits, user);
+                closest_objects_of::<T, U>(world, rays, hits, user);
                 continue;
             }
         }
         for (i, (ray, hit)) in rays.iter().zip(hits).enumerate() {
             if alone >> i & 1 == 1 {
                 *hit = simd::run(ClosestOne::<U, T>(world, ray, user, PhantomData));
-            } else if !world.objects.is_empty() {
-                *hit = closest_after_objects(world, ray, *hit, user);
+            } else if world.has_others() {
+                *hit = closest_after_objects::<T, U>(world, ray, *hit, user);
             }
         }
     }
@@ -64,10 +64,15 @@ pub(super) fn closest_of<S: Simd, T: TriangleTest, U: UserShapes>(
 
 /// The nearest of hits and those with everything else.
 #[inline(always)]
-fn closest_objects_of<U: UserShapes>(world: &World, rays: &[Ray], hits: &mut [Hit], user: &U) {
-    if !world.objects.is_empty() {
+fn closest_objects_of<T: TriangleTest, U: UserShapes>(
+    world: &World,
+    rays: &[Ray],
+    hits: &mut [Hit],
+    user: &U,
+) {
+    if world.has_others() {
         for (ray, hit) in rays.iter().zip(hits) {
-            *hit = closest_after_objects(world, ray, *hit, user);
+            *hit = closest_after_objects::<T, U>(world, ray, *hit, user);
         }
     }
 }
@@ -82,7 +87,7 @@ pub(super) fn any_of<S: Simd, T: TriangleTest, U: UserShapes>(
 ) {
     if all_miss::<S>(world, rays) {
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = any_object(world, ray, user);
+            *blocked = any_object::<T, U>(world, ray, user);
         }
         return;
     }
@@ -101,7 +106,7 @@ pub(super) fn any_of<S: Simd, T: TriangleTest, U: UserShapes>(
             *blocked = if alone >> i & 1 == 1 {
                 simd::run(OccludedOne::<U, T>(world, ray, user, PhantomData))
             } else {
-                bits >> i & 1 == 1 || any_object(world, ray, user)
+                bits >> i & 1 == 1 || any_object::<T, U>(world, ray, user)
             };
         }
     }
@@ -184,7 +189,7 @@ impl<'a, U: UserShapes, T: TriangleTest, const ANY: bool> Search<'a, U, T, ANY> 
     #[inline(always)]
     fn offer(&mut self, i: usize, found: Candidate) {
         let ray = &self.rays[i];
-        let is_accepted = || !U::HAS_FILTER || self.user.accept(self.world.tag, &found.hit(self.world), ray);
+        let is_accepted = || is_accepted(self.world, self.user, &found, ray);
         if ANY {
             if found.t < ray.t_max && is_accepted() {
                 self.t[i] = f32::NEG_INFINITY;

@@ -5,7 +5,7 @@
 
 use aureole_math::{Ray, gamma};
 
-use super::{Block, Hits, LANES, TriangleTest, corners, one_triangle};
+use super::{Block, FoundHits, Hits, LANES, MovingBlock, TriangleTest, corners, moving, one_triangle};
 use crate::bvh::Packet;
 use crate::simd::{Floats, Mask, Simd, splat3};
 
@@ -24,6 +24,11 @@ impl TriangleTest for Fast {
     fn prepare([a, b, c]: [[f32; 3]; 3]) -> [[f32; 3]; 3] {
         let from_a = |p: [f32; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
         [a, from_a(b), from_a(c)]
+    }
+
+    #[inline(always)]
+    fn prepare_lanes<F: Floats<LANES>>([a, b, c]: [[F; 3]; 3]) -> [[F; 3]; 3] {
+        [a, [b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]]
     }
 
     #[inline(always)]
@@ -64,6 +69,11 @@ impl TriangleTest for Fast {
             t_min,
             S::F8::splat(t_max),
         )
+    }
+
+    #[inline(never)]
+    fn intersect_moving(&self, block: &MovingBlock, share: f32, t_max: f32) -> FoundHits {
+        moving::intersect(self, block, share, t_max)
     }
 
     #[inline(always)]

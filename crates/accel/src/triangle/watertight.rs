@@ -6,7 +6,7 @@
 use aureole_math::{Ray, gamma};
 use glam::Vec4;
 
-use super::{Block, Hits, LANES, TriangleTest, corners, one_triangle};
+use super::{Block, FoundHits, Hits, LANES, MovingBlock, TriangleTest, corners, moving, one_triangle};
 use crate::bvh::{PACKET, Packet};
 use crate::simd::{Floats, Mask, Simd, load3, splat3};
 
@@ -33,6 +33,11 @@ impl TriangleTest for Watertight {
     type Rays = WatertightRays;
 
     fn prepare(vertices: [[f32; 3]; 3]) -> [[f32; 3]; 3] {
+        vertices
+    }
+
+    #[inline(always)]
+    fn prepare_lanes<F: Floats<LANES>>(vertices: [[F; 3]; 3]) -> [[F; 3]; 3] {
         vertices
     }
 
@@ -98,6 +103,11 @@ impl TriangleTest for Watertight {
         let corners = corners(block, self.axes);
         let t_min = S::F8::splat(self.t_min);
         intersect(corners, splat3(self.origin), splat3(self.shear), t_min, S::F8::splat(t_max))
+    }
+
+    #[inline(never)]
+    fn intersect_moving(&self, block: &MovingBlock, share: f32, t_max: f32) -> FoundHits {
+        moving::intersect(self, block, share, t_max)
     }
 
     #[inline(always)]

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use aureole::accel::Stats;
 use aureole::desc::{Family, NodeId, SceneDesc};
 use serde::Serialize;
 
@@ -39,7 +40,8 @@ struct Info {
     bounds: Option<[[f32; 3]; 2]>,
     load_seconds: f64,
     build_seconds: f64,
-    accel: Accel,
+    /// The top level, then each group that is instanced.
+    accel: Vec<Accel>,
     /// What reading, building and rendering is expected to take at once, by estimate.
     predicted_memory_bytes: u64,
     /// The most that the process has had at once while it read and built the scene, where the system tells.
@@ -47,16 +49,54 @@ struct Info {
     warnings: Vec<String>,
 }
 
-/// The acceleration structure of the top level.
+/// The acceleration structures of a level.
 #[derive(Debug, Serialize)]
 struct Accel {
     bytes: usize,
+    bytes_a_primitive: f32,
     nodes: usize,
     leaves: usize,
+    mean_children: f32,
     depth: usize,
     primitives: usize,
+    /// Primitives, counted once for each leaf that holds them.
+    references: usize,
     sah_cost: f32,
 }
+
+impl Accel {
+    fn new(stats: &Stats) -> Self {
+        Self {
+            bytes: stats.bytes,
+            bytes_a_primitive: stats.bytes_a_primitive(),
+            nodes: stats.nodes,
+            leaves: stats.leaves,
+            mean_children: stats.mean_children(),
+            depth: stats.depth,
+            primitives: stats.primitives,
+            references: stats.references,
+            sah_cost: stats.sah_cost,
+        }
+    }
+
+    /// Its row in the table.
+    fn row(&self) -> String {
+        format!(
+            "{:>10} {:>11} {:>8} {:>8} {:>6} {:>9.2} {:>8.1} {:>7.2}",
+            self.primitives,
+            self.references,
+            self.nodes,
+            self.leaves,
+            self.depth,
+            self.mean_children,
+            self.bytes_a_primitive,
+            self.sah_cost
+        )
+    }
+}
+
+/// The table's head: what [`Accel::row`] tells.
+const ACCEL_HEAD: &str = "primitives  references    nodes   leaves  depth  children    bytes    cost";
 
 /// Runs the command.
 pub(crate) fn run(args: &InfoArgs, painter: &Painter) -> Result<Exit, Failure> {
@@ -76,7 +116,6 @@ impl Info {
         let counts = scene.counts();
         let crop = scene.film.crop;
         let bounds = scene.bounds();
-        let stats = scene.accel_stats();
         let root = |node: Option<NodeId>, default: &str| {
             node.map_or_else(|| default.to_owned(), |id| desc[id].kind.clone())
         };
@@ -100,14 +139,7 @@ impl Info {
             bounds: (!bounds.is_empty()).then(|| [bounds.min.to_array(), bounds.max.to_array()]),
             load_seconds: session.load_seconds,
             build_seconds: session.build_seconds,
-            accel: Accel {
-                bytes: stats.bytes,
-                nodes: stats.nodes,
-                leaves: stats.leaves,
-                depth: stats.depth,
-                primitives: stats.primitives,
-                sah_cost: stats.sah_cost,
-            },
+            accel: scene.accel_stats().iter().map(Accel::new).collect(),
             predicted_memory_bytes: session.estimate.peak(),
             peak_memory_bytes: memory::peak(),
             warnings: session.report.warnings.iter().map(|warning| warning.message.clone()).collect(),
@@ -134,16 +166,18 @@ impl Info {
         line("materials", format!("{}{}", self.materials, listed(&self.kinds["bsdf"])));
         line("textures", format!("{}{}", self.textures, listed(&self.kinds["texture"])));
         line("bounds", self.bounds.map_or("none".into(), |[low, high]| format!("{low:?} to {high:?}")));
-        let accel = &self.accel;
         let memory =
             self.peak_memory_bytes.map_or("?".into(), |bytes| format!("{}B", quantity(bytes as f64)));
         let predicted = quantity(self.predicted_memory_bytes as f64);
         line("memory", format!("{predicted}B to render it, by estimate; {memory} so far"));
-        line("acceleration", format!("{}B", quantity(accel.bytes as f64)));
+        let bytes: usize = self.accel.iter().map(|level| level.bytes).sum();
+        line("acceleration", format!("{}B", quantity(bytes as f64)));
         if with_accel {
-            line("  nodes", format!("{}, {} leaves, {} deep", accel.nodes, accel.leaves, accel.depth));
-            line("  leaves", format!("hold {} primitives", accel.primitives));
-            line("  cost", format!("{:.2} primitive tests a ray (SAH)", accel.sah_cost));
+            line("  level", ACCEL_HEAD.into());
+            for (i, level) in self.accel.iter().enumerate() {
+                line(&if i == 0 { "  top".into() } else { format!("  group {i}") }, level.row());
+            }
+            line("", "children a node, bytes a primitive, expected visits and tests a ray (SAH)".into());
         }
         line(
             "time",
