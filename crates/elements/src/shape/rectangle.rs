@@ -4,7 +4,7 @@ use aureole_desc::{Mesh, ParamDoc, Params, SceneError};
 use aureole_math::warp::SphericalRectangle;
 use aureole_math::{Bounds3, Point2, Point3, Ray, Transform, Vector3};
 
-use super::mesh::is_near;
+use super::mesh::{is_near, is_sound};
 use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint, TriangleMesh};
 use crate::{Element, Resolver};
 
@@ -53,10 +53,12 @@ impl Rectangle {
     /// What the rectangle covers around a point that is so near that it should be drawn by that.
     #[inline]
     fn seen_from(&self, reference: Point3) -> Option<SphericalRectangle> {
-        if !self.is_right {
+        let (corner, [u, v]) = (self.corner, self.sides);
+        let points = [corner, corner + u, corner + v, corner + u + v, corner + (u + v) * 0.5];
+        if !(self.is_right && is_near(reference, u.cross(v).length(), &points)) {
             return None;
         }
-        SphericalRectangle::new(reference, self.corner, self.sides).filter(|seen| is_near(seen.solid_angle()))
+        SphericalRectangle::new(reference, corner, self.sides).filter(|seen| is_sound(seen.solid_angle()))
     }
 }
 
