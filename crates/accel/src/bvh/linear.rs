@@ -28,7 +28,12 @@ impl Linear {
         let size = (around.max - around.min).max(Vec4::splat(f32::MIN_POSITIVE));
         let scale = Vec4::splat((1_u32 << BITS) as f32 * (1.0 - 1e-6)) / size;
         let curve = Self { low: around.min, scale };
-        items.par_sort_unstable_by_key(|item| (curve.code(item), item.index()));
+        // Small pairs are sorted in place of the items, and each code is computed once.
+        let mut order: Vec<(u64, u32)> =
+            items.par_iter().zip(0..items.len() as u32).map(|(item, i)| (curve.code(item), i)).collect();
+        order.par_sort_unstable();
+        let sorted: Vec<Item> = order.par_iter().map(|&(_, i)| items[i as usize]).collect();
+        items.copy_from_slice(&sorted);
         curve
     }
 
