@@ -19,16 +19,15 @@ impl World {
     /// As for [`build`](Self::build), or [`AccelError::Changed`] where there are more or fewer primitives than before or of another
     /// kind; the world is unchanged then.
     pub fn refit(&mut self, geometries: &[Geometry]) -> Result<(), AccelError> {
+        self.same_numbers(geometries)?;
         let moves = geometries.iter().any(|g| matches!(g, Geometry::MovingTriangles { .. }));
         let fits = |index: &Index| matches!(index, Index::List { .. } | Index::Binary(_) | Index::Wide(_));
         if !(fits(&self.triangles) && fits(&self.object_index)) || moves || !self.moving.is_empty() {
             // Cells have no boxes to fit, rounded ones no room, and what moves has its keys in them.
             let masks = self.masks.clone();
-            self.same_numbers(geometries)?;
             *self = Self::build(geometries.to_vec(), self.tag, &self.config)?.with_masks(masks);
             return Ok(());
         }
-        self.same_numbers(geometries)?;
         let meshes = self.checked_meshes(geometries)?;
         let objects = self.moved_objects(geometries)?;
         self.triangles.refit(&self.blocks.refit(&meshes));
