@@ -17,6 +17,7 @@ mod error;
 mod limits;
 mod mesh;
 mod node;
+mod normals;
 mod params;
 mod report;
 mod scene_desc;

@@ -15,7 +15,7 @@ use rustc_hash::FxHashMap;
 use crate::file::{self, SearchPath};
 use crate::format::{Context, Format, Input};
 use crate::mesh::obj::{self, ObjFile, ObjMaterial, Split};
-use crate::mesh::{MeshError, add_smooth_normals, ply};
+use crate::mesh::{MeshError, ply};
 
 /// PLY files.
 pub(crate) const PLY: Format = Format {
@@ -50,7 +50,7 @@ fn read_ply(input: Input<'_>, context: &mut Context<'_>) -> Result<SceneDesc, Sc
     let mut mesh =
         ply::decode(&bytes, &context.options.limits).map_err(|error| error.in_file(input.path, at))?;
     if mesh.normals.is_empty() {
-        add_smooth_normals(&mut mesh);
+        mesh.add_smooth_normals();
     }
     let mut scene = SceneDesc::default();
     let material = match mesh.attributes.iter().find(|attribute| attribute.name.ends_with("_color")) {

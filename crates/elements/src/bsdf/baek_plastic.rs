@@ -17,13 +17,15 @@
 use std::f32::consts::FRAC_1_PI;
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::{Id, Point2, Vector3, reflect, warp};
+use aureole_math::{Id, Point2, Vector3};
 use aureole_spectrum::{Spectrum, SpectrumRole};
 
 use super::dielectric::relative_ior;
+use super::gloss_or_matte::GlossOrMatte;
+use super::lobe::reflected;
 use super::microfacet::{Microfacet, ROUGHNESS_PARAMS, Roughness};
 use super::plastic::PLASTIC_PARAMS;
-use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
+use super::{Bsdf, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
 use crate::{Element, Resolver, Texture, spectrum_texture};
 
 /// A plastic of Baek's model.
@@ -84,6 +86,10 @@ impl BaekPlasticLobe {
         1.0 - fresnel::dielectric(cos, self.eta).reflectance
     }
 
+    fn draw(&self, wo: Vector3) -> GlossOrMatte<'_> {
+        GlossOrMatte { surface: &self.surface, gloss: self.coat_probability(wo) }
+    }
+
     /// The probability of drawing the coat's reflection.
     #[inline]
     fn coat_probability(&self, wo: Vector3) -> f32 {
@@ -111,29 +117,15 @@ impl LobeOps for BaekPlasticLobe {
         if wo.z <= 0.0 {
             return None;
         }
-        let wi = if uc < self.coat_probability(wo) {
-            reflect(wo, self.surface.sample_visible(wo, u))
-        } else {
-            warp::square_to_cosine_hemisphere(u)
-        };
-        let pdf_omega = self.pdf_omega(wo, wi);
-        (wi.z > 0.0 && pdf_omega > 0.0).then(|| LobeSample {
-            wi,
-            value: self.eval(wo, wi, mode),
-            pdf_omega,
-            flags: LobeFlags::REFLECTION,
-            eta: 1.0,
-        })
+        let wi = self.draw(wo).sample(wo, uc, u);
+        reflected(self, wo, wi, mode)
     }
 
     fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
         }
-        let m = (wo + wi).normalized();
-        let p = self.coat_probability(wo);
-        let coat = self.surface.pdf_visible(wo, m) / (4.0 * wo.abs_dot(m));
-        p * coat + (1.0 - p) * warp::cosine_hemisphere_pdf(wi.z)
+        self.draw(wo).pdf_omega(wo, wi)
     }
 
     fn albedo(&self, wo: Vector3) -> Spectrum {

@@ -4,6 +4,7 @@ use aureole_math::{Point2, Vector3, reflect};
 use aureole_spectrum::Spectrum;
 
 use super::dielectric::Glass;
+use super::lobe::reflected;
 use super::microfacet::Microfacet;
 use super::{LobeFlags, LobeOps, LobeSample, TransportMode};
 
@@ -50,23 +51,13 @@ impl LobeOps for GlossLobe {
             });
         };
         let wi = reflect(wo, surface.sample_visible(wo, u));
-        let pdf_omega = self.pdf_omega(wo, wi);
-        (wi.z > 0.0 && pdf_omega > 0.0).then(|| LobeSample {
-            wi,
-            value: self.eval(wo, wi, mode),
-            pdf_omega,
-            flags: LobeFlags::REFLECTION,
-            eta: 1.0,
-        })
+        reflected(self, wo, wi, mode)
     }
 
     #[inline]
     fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {
         match self.surface {
-            Some(surface) if wo.z > 0.0 && wi.z > 0.0 => {
-                let m = (wo + wi).normalized();
-                surface.pdf_visible(wo, m) / (4.0 * wo.abs_dot(m))
-            }
+            Some(surface) if wo.z > 0.0 && wi.z > 0.0 => surface.pdf_mirrored(wo, wi),
             _ => 0.0,
         }
     }

@@ -117,6 +117,24 @@ pub trait LobeOps {
     fn albedo(&self, wo: Vector3) -> Spectrum;
 }
 
+/// The sample of a lobe that drew `wi` by its own density; none if that is not above the surface.
+#[inline]
+pub(super) fn reflected(
+    lobe: &impl LobeOps,
+    wo: Vector3,
+    wi: Vector3,
+    mode: TransportMode,
+) -> Option<LobeSample> {
+    let pdf_omega = lobe.pdf_omega(wo, wi);
+    (wi.z > 0.0 && pdf_omega > 0.0).then(|| LobeSample {
+        wi,
+        value: lobe.eval(wo, wi, mode),
+        pdf_omega,
+        flags: LobeFlags::REFLECTION,
+        eta: 1.0,
+    })
+}
+
 /// Lists the lobes: makes the enum and its static dispatch.
 macro_rules! lobes {
     ($($Variant:ident($Type:ident)),* $(,)?) => {

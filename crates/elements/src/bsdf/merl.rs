@@ -19,7 +19,8 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{PiecewiseConstant1D, Point2, Vector3, reflect, spherical_direction, warp};
 use aureole_spectrum::{Spectrum, luminance};
 
-use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode};
+use super::lobe::reflected;
+use super::{Bsdf, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode};
 use crate::{Element, Resolver};
 
 /// A reflectance of the MERL database.
@@ -150,14 +151,7 @@ impl LobeOps for MerlLobe {
             let root = self.data.halves.sample(u.x).x;
             reflect(wo, spherical_direction(0.5 * PI * root * root, 2.0 * PI * u.y))
         };
-        let pdf_omega = self.pdf_omega(wo, wi);
-        (wi.z > 0.0 && pdf_omega > 0.0).then(|| LobeSample {
-            wi,
-            value: self.eval(wo, wi, mode),
-            pdf_omega,
-            flags: LobeFlags::REFLECTION,
-            eta: 1.0,
-        })
+        reflected(self, wo, wi, mode)
     }
 
     fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {

@@ -92,6 +92,13 @@ impl Microfacet {
         self.d(m) * self.g1(wo, m) * wo.abs_dot(m) / wo.z
     }
 
+    /// Density of `wi` per steradian where it mirrors `wo` at a visible normal; both above the surface.
+    #[inline]
+    pub fn pdf_mirrored(&self, wo: Vector3, wi: Vector3) -> f32 {
+        let m = (wo + wi).normalized();
+        self.pdf_visible(wo, m) / (4.0 * wo.abs_dot(m))
+    }
+
     /// Draws a normal in proportion to its area visible from `wo` (with `wo.z > 0`).
     #[inline]
     pub fn sample_visible(&self, wo: Vector3, u: Point2) -> Vector3 {

@@ -18,6 +18,7 @@ mod directional;
 mod disney;
 pub mod fresnel;
 mod gloss;
+mod gloss_or_matte;
 mod hair;
 mod hair_lobe;
 mod half_space;

@@ -15,8 +15,9 @@ use aureole_spectrum::Spectrum;
 
 use super::conductor::{METAL_PARAMS, Metal, Metallic};
 use super::directional::AlbedoTable;
+use super::lobe::reflected;
 use super::microfacet::{COMPENSATION_PARAM, Microfacet, ROUGHNESS_PARAMS, Roughness};
-use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode};
+use super::{Bsdf, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode};
 use crate::{Element, Resolver};
 
 /// A rough metal.
@@ -86,14 +87,7 @@ impl LobeOps for RoughConductorLobe {
             return None;
         }
         let wi = reflect(wo, self.surface.sample_visible(wo, u));
-        let pdf_omega = self.pdf_omega(wo, wi);
-        (wi.z > 0.0 && pdf_omega > 0.0).then(|| LobeSample {
-            wi,
-            value: self.eval(wo, wi, mode),
-            pdf_omega,
-            flags: LobeFlags::REFLECTION,
-            eta: 1.0,
-        })
+        reflected(self, wo, wi, mode)
     }
 
     #[inline]
@@ -101,8 +95,7 @@ impl LobeOps for RoughConductorLobe {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
         }
-        let m = (wo + wi).normalized();
-        self.surface.pdf_visible(wo, m) / (4.0 * wo.abs_dot(m))
+        self.surface.pdf_mirrored(wo, wi)
     }
 
     #[inline]

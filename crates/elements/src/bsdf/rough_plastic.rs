@@ -7,13 +7,15 @@
 use std::f32::consts::FRAC_1_PI;
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::{Point2, Vector3, reflect, warp};
+use aureole_math::{Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
 use super::directional::{reflectance, transmittance};
+use super::gloss_or_matte::GlossOrMatte;
+use super::lobe::reflected;
 use super::microfacet::{self, Microfacet};
 use super::plastic::{Coat, Coated, PLASTIC_PARAMS};
-use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
+use super::{Bsdf, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode, fresnel};
 use crate::{Element, Resolver};
 
 /// Entries of a table over the square root of the cosine, which is steepest at grazing angles.
@@ -106,6 +108,11 @@ impl RoughPlasticLobe {
         (a + (b - a) * t) * (1.0 / 65535.0)
     }
 
+    fn draw(&self, wo: Vector3) -> GlossOrMatte<'_> {
+        GlossOrMatte { surface: &self.surface, gloss: self.coat_probability(wo) }
+    }
+
+    /// The probability of drawing the coat's reflection.
     #[inline]
     fn coat_probability(&self, wo: Vector3) -> f32 {
         let through = self.through(wo.z);
@@ -130,29 +137,15 @@ impl LobeOps for RoughPlasticLobe {
         if wo.z <= 0.0 {
             return None;
         }
-        let wi = if uc < self.coat_probability(wo) {
-            reflect(wo, self.surface.sample_visible(wo, u))
-        } else {
-            warp::square_to_cosine_hemisphere(u)
-        };
-        let pdf_omega = self.pdf_omega(wo, wi);
-        (wi.z > 0.0 && pdf_omega > 0.0).then(|| LobeSample {
-            wi,
-            value: self.eval(wo, wi, mode),
-            pdf_omega,
-            flags: LobeFlags::REFLECTION,
-            eta: 1.0,
-        })
+        let wi = self.draw(wo).sample(wo, uc, u);
+        reflected(self, wo, wi, mode)
     }
 
     fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
         }
-        let m = (wo + wi).normalized();
-        let p = self.coat_probability(wo);
-        let coat = self.surface.pdf_visible(wo, m) / (4.0 * wo.abs_dot(m));
-        p * coat + (1.0 - p) * warp::cosine_hemisphere_pdf(wi.z)
+        self.draw(wo).pdf_omega(wo, wi)
     }
 
     fn albedo(&self, wo: Vector3) -> Spectrum {

@@ -3,11 +3,9 @@
 pub mod curves;
 pub(crate) mod error;
 pub mod ies;
-mod normals;
 pub mod obj;
 pub mod ply;
 pub mod serialized;
 pub mod vol;
 
 pub use error::MeshError;
-pub use normals::add_smooth_normals;

@@ -10,7 +10,7 @@ use rustc_hash::FxHashSet;
 use super::scope::Scope;
 use super::translate::{MeshKey, Orientation, Translator};
 use super::tree::{ObjectId, Tag};
-use crate::mesh::{add_smooth_normals, curves, obj, ply, serialized, vol};
+use crate::mesh::{curves, obj, ply, serialized, vol};
 
 /// Mitsuba's plugins and Aureole's words for them. Not all of the latter can be rendered yet.
 const KINDS: &[(&str, &str)] = &[
@@ -231,7 +231,7 @@ fn read_mesh(
     // Meshes are smooth in Mitsuba unless they are told to be flat.
     mesh.normals.clear();
     if !face_normals {
-        add_smooth_normals(&mut mesh);
+        mesh.add_smooth_normals();
     }
     Ok((Arc::new(mesh), Orientation::ByFaces))
 }

@@ -26,7 +26,8 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point2, Vector3, reflect};
 use aureole_spectrum::Spectrum;
 
-use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode};
+use super::lobe::reflected;
+use super::{Bsdf, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode};
 use crate::{Element, Resolver};
 
 use data::MeasuredData;
@@ -159,14 +160,7 @@ impl LobeOps for MeasuredLobe {
             aureole_math::spherical_direction(u_m[0] * u_m[0] * (0.5 * PI), (2.0 * u_m[1] - 1.0) * PI + turn);
         // Mirrored twice, a direction is itself.
         let [_, wi] = self.data.mirrored(wo, reflect(above, m));
-        let pdf_omega = self.pdf_omega(wo, wi);
-        (wi.z > 0.0 && pdf_omega > 0.0).then(|| LobeSample {
-            wi,
-            value: self.eval(wo, wi, mode),
-            pdf_omega,
-            flags: LobeFlags::REFLECTION,
-            eta: 1.0,
-        })
+        reflected(self, wo, wi, mode)
     }
 
     fn pdf_omega(&self, wo: Vector3, wi: Vector3) -> f32 {

@@ -20,7 +20,7 @@ pub(super) fn tessellate(
     mesh.polygons.clear();
     if mesh.normals.is_empty() {
         let (place_of, places) = weld::places(&mesh.positions);
-        mesh.normals = weld::smooth_normals(&mesh, &place_of, places);
+        mesh.normals = mesh.smooth_normals(places, |vertex| place_of[vertex] as usize);
     }
     mesh.indices.clear();
     mesh.attributes.iter_mut().filter(|a| a.domain == AttributeDomain::Face).for_each(|a| a.data.clear());
@@ -120,7 +120,7 @@ pub(super) fn displace(
         let (sum, count) = sums[place as usize];
         *p = (Vector3::from(*p) + sum / count).to_array();
     }
-    mesh.normals = weld::smooth_normals(&mesh, &group_of, groups);
+    mesh.normals = mesh.smooth_normals(groups, |vertex| group_of[vertex] as usize);
     mesh
 }
 

@@ -3,8 +3,6 @@
 use aureole_desc::{Attribute, AttributeDomain, Mesh};
 use rustc_hash::FxHashMap;
 
-use crate::mesh::add_smooth_normals;
-
 /// A part of a file: the faces of one object or group with one material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
@@ -108,7 +106,7 @@ fn gather<const N: usize>(corners: &[Corner], field: usize, pool: &[[f32; N]]) -
 /// Some corners have normals and some do not: the latter get smooth ones.
 fn fill_missing_normals(mesh: &mut Mesh, corners: &[Corner]) {
     let written = std::mem::take(&mut mesh.normals);
-    add_smooth_normals(mesh);
+    mesh.add_smooth_normals();
     for ((normal, written), corner) in mesh.normals.iter_mut().zip(written).zip(corners) {
         if corner[2] != MISSING {
             *normal = written;
