@@ -152,6 +152,19 @@ fn inside_a_shining_shell() {
 }
 
 /// Depth-limited, the same shell is a geometric series: 1 + 1/2 + 1/4.
+/// The same, where the material shines by itself.
+#[test]
+fn inside_a_shell_that_glows() {
+    let mut b = Builder::new();
+    let glowing = [("base_color", 0.4), ("specular_weight", 0.0), ("emission_luminance", 1.2)];
+    let glowing = glowing.map(|(name, value)| (name, Value::Float(value)));
+    let params = glowing.into_iter().fold(Params::new(), |params, (name, value)| params.with(name, value));
+    let glowing = b.node(Family::Bsdf, "open_pbr", params);
+    b.shape("sphere", Params::new().with("bsdf", glowing).with("flip_normals", Value::Bool(true)));
+    b.camera([0.2, 0.1, 0.0], [0.3, 0.2, 1.0], Vector3::Y);
+    b.expect("path", &[], 2.0);
+}
+
 #[test]
 fn path_lengths_are_counted_in_segments() {
     let mut b = Builder::new();

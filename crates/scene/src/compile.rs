@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use aureole_accel::{AccelError, Config, Geometry, World};
 use aureole_desc::{Family, Limits, Node, NodeId, Params, Report, SceneDesc, SceneError, Span, Value};
+use aureole_elements::light::Area;
 use aureole_elements::{Camera, Filter, Light, Material, Resolver, Sampler, Shape, shape};
 use aureole_math::{Arena, Bounds3, Id, Point3, Transform, Vector3};
 use aureole_spectrum::{SpectrumRole, SpectrumSource, Wavelengths};
@@ -199,7 +200,23 @@ impl Compiler<'_> {
     /// Builds a shape that is really there, with its material, emission and cut-out.
     fn solid(&mut self, level: usize, node: NodeId) -> Result<Option<Geometry>, SceneError> {
         let desc = self.resolve.desc;
-        let built = self.build_shape(&desc[node])?;
+        let mut params = desc[node].params.clone();
+        let bsdf = params.try_node("bsdf")?;
+        let material = match bsdf {
+            Some(bsdf) => self.resolve.material(bsdf)?,
+            None => self.default_material()?,
+        };
+        let own_light = params.try_node("emission")?;
+        // A material that shines makes the shape a light, which it has to know.
+        let glow = bsdf.filter(|_| self.resolve.materials[material].shines(&self.resolve.materials));
+        let built = match glow.filter(|_| own_light.is_none()) {
+            Some(bsdf) => {
+                let mut shining = desc[node].clone();
+                shining.params.push("emission", Value::Node(bsdf), desc[node].span);
+                self.build_shape(&shining)?
+            }
+            None => self.build_shape(&desc[node])?,
+        };
         let geometry = match built.geometry() {
             shape::Geometry::Triangles { positions, indices } => {
                 Some(Geometry::Triangles { positions, indices })
@@ -209,21 +226,19 @@ impl Compiler<'_> {
         };
         let id = self.shapes.push(built);
         self.origins.shapes.push(node);
-        let mut params = desc[node].params.clone();
-        let material = match params.try_node("bsdf")? {
-            Some(bsdf) => self.resolve.material(bsdf)?,
-            None => self.default_material()?,
+        let made = match (own_light, glow) {
+            (Some(emission), _) => Some((self.emission(id, emission)?, emission)),
+            (None, Some(bsdf)) => self.glow(id, material, bsdf, node),
+            (None, None) => None,
         };
-        let light = match params.try_node("emission")? {
+        let light = match made {
             // Each instance of the group makes a light of its own from it.
-            Some(emission) if level > 0 => {
-                let light = self.emission(id, emission)?;
-                self.shining[level].push((self.levels[level].len() as u32, light, emission));
+            Some((light, origin)) if level > 0 => {
+                self.shining[level].push((self.levels[level].len() as u32, light, origin));
                 None
             }
-            Some(emission) => {
-                let light = self.emission(id, emission)?;
-                self.origins.lights.push(emission);
+            Some((light, origin)) => {
+                self.origins.lights.push(origin);
                 Some(self.lights.push(light))
             }
             None => None,
@@ -245,6 +260,22 @@ impl Compiler<'_> {
             None => self.resolve.report.warn("an infinite plane inside a group is ignored", desc[node].span),
         }
         Ok(geometry)
+    }
+
+    /// The light of a shape whose material shines, and the node that it comes from.
+    fn glow(
+        &mut self,
+        shape: Id<Shape>,
+        material: Id<Material>,
+        bsdf: NodeId,
+        node: NodeId,
+    ) -> Option<(Light, NodeId)> {
+        if !self.shapes[shape].area().is_finite() {
+            let message = "the material shines, but this shape cannot: its area is not known";
+            self.resolve.report.warn(message, self.resolve.desc[node].span);
+            return None;
+        }
+        Some((Area::of_material(shape, material).into(), bsdf))
     }
 
     fn emission(&mut self, shape: Id<Shape>, node: NodeId) -> Result<Light, SceneError> {

@@ -283,7 +283,12 @@ impl Scene {
     /// What lights may ask for.
     #[inline]
     pub fn light_context(&self, wavelengths: Wavelengths) -> LightContext<'_> {
-        LightContext { textures: &self.textures, shapes: &self.shapes, wavelengths }
+        LightContext {
+            textures: &self.textures,
+            shapes: &self.shapes,
+            materials: &self.materials,
+            wavelengths,
+        }
     }
 
     /// Radiance that a place sends along unit `w` by itself.

@@ -26,7 +26,7 @@ pub(super) const BEND_PARAMS: [ParamDoc; 3] = [
 /// A material below a bent normal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bend {
-    material: Id<Material>,
+    pub(super) material: Id<Material>,
     flip_invalid_normals: bool,
     soften_terminator: bool,
 }
@@ -48,13 +48,17 @@ impl Bend {
     /// Evaluates the material as if the shading normal were `bent`.
     pub(super) fn evaluate(&self, bent: Vector3, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
         let n = at.frame.n;
-        let is_invalid = at.wo.dot(bent) * at.wo.dot(n) <= 0.0;
-        // Mirrored about the normal: the slope is kept, and turned towards the viewer.
-        let bent =
-            if is_invalid && self.flip_invalid_normals { n * (2.0 * n.dot(bent)) - bent } else { bent };
+        let bent = if self.flip_invalid_normals { towards_viewer(bent, at) } else { bent };
         let first = out.len();
         let frame = Frame::from_normal_and_tangent(bent, at.dp_du);
         MaterialContext { frame, ..*at }.nested(self.material, weight, out);
         out.rebase(first, n, self.soften_terminator);
     }
+}
+
+/// A bent normal, mirrored about the shading normal if the viewer could only see it from behind: its slope is kept.
+pub(super) fn towards_viewer(bent: Vector3, at: &MaterialContext<'_>) -> Vector3 {
+    let n = at.frame.n;
+    let is_invalid = at.wo.dot(bent) * at.wo.dot(n) <= 0.0;
+    if is_invalid { n * (2.0 * n.dot(bent)) - bent } else { bent }
 }

@@ -11,9 +11,10 @@
 //! scattering that could be written down, and loses light; Mitsuba 3.9 does so, and its scenes are tuned to it.
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::Id;
+use aureole_math::{Arena, Id};
+use aureole_spectrum::Spectrum;
 
-use super::{Bsdf, Material, MaterialContext, MaterialOps, nested_material};
+use super::{Bsdf, EmissionContext, Material, MaterialContext, MaterialOps, nested_material};
 use crate::{Element, Resolver, Texture, float_texture};
 
 /// A mixture.
@@ -67,5 +68,13 @@ impl MaterialOps for Blend {
         if self.dirac == Dirac::DensityOne {
             out.count_diracs(first);
         }
+    }
+
+    fn shines(&self, materials: &Arena<Material>) -> bool {
+        [self.a, self.b].into_iter().any(|material| materials[material].shines(materials))
+    }
+
+    fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {
+        at.nested(self.a).lerp(at.nested(self.b), at.texture.float(self.weight).clamp(0.0, 1.0))
     }
 }

@@ -11,10 +11,11 @@
 //! References: [Blinn 1978] "Simulation of Wrinkled Surfaces".
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::Id;
+use aureole_math::{Arena, Id};
+use aureole_spectrum::Spectrum;
 
 use super::bend::{BEND_PARAMS, Bend};
-use super::{Bsdf, MaterialContext, MaterialOps};
+use super::{Bsdf, EmissionContext, Material, MaterialContext, MaterialOps};
 use crate::{Element, Resolver, Texture, float_texture};
 
 /// A bumpy material.
@@ -54,5 +55,13 @@ impl MaterialOps for Bump {
         let dv = at.dp_dv + n * (slope.y - n.dot(at.dp_dv));
         let bent = du.cross(dv).try_normalized().map_or(n, |bent| bent.face_forward(at.ng));
         self.bend.evaluate(bent, at, weight, out);
+    }
+
+    fn shines(&self, materials: &Arena<Material>) -> bool {
+        materials[self.bend.material].shines(materials)
+    }
+
+    fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {
+        at.nested(self.bend.material)
     }
 }

@@ -6,8 +6,8 @@ use aureole_spectrum::Spectrum;
 use super::{
     BaekPlasticLobe, ConductorLobe, DielectricLobe, DiffuseLobe, DiffuseTransmissionLobe, GlossLobe,
     HairLobe, LayeredLobe, MeasuredLobe, MerlLobe, NullLobe, PlasticLobe, PrincipledLobe, PrincipledThinLobe,
-    PrismLobe, RoughConductorLobe, RoughDielectricLobe, RoughDiffuseLobe, RoughPlasticLobe, SheenLobe,
-    SubsurfaceLobe, ThinDielectricLobe,
+    PrismLobe, RoughConductorLobe, RoughDielectricLobe, RoughDiffuseLobe, RoughPlasticLobe, RoughPrismLobe,
+    SheenLobe, SubsurfaceLobe, ThinDielectricLobe,
 };
 
 /// What travels along a path: refraction squeezes radiance, but not importance.
@@ -195,6 +195,7 @@ lobes! {
     RoughConductor(RoughConductorLobe),
     Dielectric(DielectricLobe),
     Prism(PrismLobe),
+    RoughPrism(RoughPrismLobe),
     ThinDielectric(ThinDielectricLobe),
     RoughDielectric(RoughDielectricLobe),
     Plastic(PlasticLobe),

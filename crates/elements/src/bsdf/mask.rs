@@ -6,9 +6,10 @@
 //! | `bsdf` | bsdf | | the material |
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::Id;
+use aureole_math::{Arena, Id};
+use aureole_spectrum::Spectrum;
 
-use super::{Bsdf, Material, MaterialContext, MaterialOps, NullLobe, nested_material};
+use super::{Bsdf, EmissionContext, Material, MaterialContext, MaterialOps, NullLobe, nested_material};
 use crate::{Element, Resolver, Texture, float_texture};
 
 /// A cut-out.
@@ -43,5 +44,13 @@ impl MaterialOps for Mask {
         if opacity > 0.0 {
             at.nested(self.material, weight * opacity, out);
         }
+    }
+
+    fn shines(&self, materials: &Arena<Material>) -> bool {
+        materials[self.material].shines(materials)
+    }
+
+    fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {
+        at.nested(self.material) * at.texture.float(self.opacity).clamp(0.0, 1.0)
     }
 }

@@ -16,6 +16,7 @@ mod diffuse;
 mod diffuse_transmission;
 mod directional;
 mod disney;
+mod emission;
 pub mod fresnel;
 mod gloss;
 mod gloss_or_matte;
@@ -53,6 +54,7 @@ use std::fmt::Debug;
 
 use aureole_desc::{NodeId, Params, SceneError, Span};
 use aureole_math::{Arena, Frame, Id, Vector3};
+use aureole_spectrum::Spectrum;
 
 use crate::{Resolver, TextureContext};
 
@@ -65,6 +67,7 @@ pub use conductor::{Conductor, ConductorLobe};
 pub use dielectric::{Dielectric, DielectricLobe};
 pub use diffuse::{Diffuse, DiffuseLobe};
 pub use diffuse_transmission::{DiffuseTransmission, DiffuseTransmissionLobe};
+pub use emission::EmissionContext;
 pub use gloss::GlossLobe;
 pub use hair::Hair;
 pub use hair_lobe::HairLobe;
@@ -80,7 +83,7 @@ pub use open_pbr::OpenPbr;
 pub use plastic::{Plastic, PlasticLobe};
 pub use principled::{Principled, PrincipledLobe};
 pub use principled_thin::{PrincipledThin, PrincipledThinLobe};
-pub use prism::PrismLobe;
+pub use prism::{PrismLobe, RoughPrismLobe};
 pub use rough_conductor::{RoughConductor, RoughConductorLobe};
 pub use rough_dielectric::{RoughDielectric, RoughDielectricLobe};
 pub use rough_diffuse::{RoughDiffuse, RoughDiffuseLobe};
@@ -123,6 +126,16 @@ impl MaterialContext<'_> {
 pub trait MaterialOps: Debug + Send + Sync {
     /// Adds the lobes seen at a hit, their weights multiplied by `weight`.
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf);
+
+    /// Whether shapes of this material are lights.
+    fn shines(&self, _materials: &Arena<Material>) -> bool {
+        false
+    }
+
+    /// Radiance that it sends out by itself.
+    fn emitted(&self, _at: &EmissionContext<'_>) -> Spectrum {
+        Spectrum::ZERO
+    }
 }
 
 registry! {
@@ -163,6 +176,16 @@ impl Material {
     #[inline]
     pub fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
         each_material!(self, m => m.evaluate(at, weight, out));
+    }
+
+    /// Whether shapes of this material are lights.
+    pub fn shines(&self, materials: &Arena<Material>) -> bool {
+        each_material!(self, m => m.shines(materials))
+    }
+
+    /// Radiance that it sends out by itself.
+    pub fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {
+        each_material!(self, m => m.emitted(at))
     }
 }
 

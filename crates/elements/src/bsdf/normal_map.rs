@@ -8,11 +8,11 @@
 //! | `soften_terminator` | bool | true | fade light towards the true surface's horizon |
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::{Id, Vector3};
-use aureole_spectrum::SpectrumRole;
+use aureole_math::{Arena, Id, Vector3};
+use aureole_spectrum::{Spectrum, SpectrumRole};
 
 use super::bend::{BEND_PARAMS, Bend};
-use super::{Bsdf, MaterialContext, MaterialOps};
+use super::{Bsdf, EmissionContext, Material, MaterialContext, MaterialOps};
 use crate::{Element, Resolver, Texture, spectrum_texture};
 
 /// A material with mapped normals.
@@ -50,5 +50,13 @@ impl MaterialOps for NormalMap {
         let [x, y, z] = at.texture.spectrum(self.normals).rgb().map(|c| 2.0 * c - 1.0);
         let bent = at.frame.to_world(Vector3::new(x, y, z)).try_normalized().unwrap_or(at.frame.n);
         self.bend.evaluate(bent, at, weight, out);
+    }
+
+    fn shines(&self, materials: &Arena<Material>) -> bool {
+        materials[self.bend.material].shines(materials)
+    }
+
+    fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {
+        at.nested(self.bend.material)
     }
 }

@@ -6,9 +6,12 @@
 //! | `back` | bsdf | `bsdf` | the material behind |
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::Id;
+use aureole_math::{Arena, Id};
+use aureole_spectrum::Spectrum;
 
-use super::{Bsdf, Material, MaterialContext, MaterialOps, nested_material, optional_material};
+use super::{
+    Bsdf, EmissionContext, Material, MaterialContext, MaterialOps, nested_material, optional_material,
+};
 use crate::{Element, Resolver};
 
 /// A material for both sides.
@@ -40,5 +43,13 @@ impl MaterialOps for TwoSided {
             let behind = MaterialContext { frame: at.frame.flipped(), ng: -at.ng, ..*at };
             behind.nested(self.back, weight, out);
         }
+    }
+
+    fn shines(&self, materials: &Arena<Material>) -> bool {
+        [self.front, self.back].into_iter().any(|material| materials[material].shines(materials))
+    }
+
+    fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {
+        if at.cos >= 0.0 { at.nested(self.front) } else { at.flipped().nested(self.back) }
     }
 }

@@ -6,7 +6,9 @@
 //! | `two_sided` | bool | false | shine on the inner side as well |
 //! | `power` | float | 0 | if positive: scale to this power of the whole shape, W |
 //!
-//! It is given to a shape as `emission`. A shape in a group shines in each instance of it.
+//! It is given to a shape as `emission`. A shape in a group shines in each instance of it. Shapes of a material that shines
+//! by itself (`open_pbr` with `emission_luminance`) are such lights too; what their textures are asked for is known but for
+//! the attributes of meshes.
 
 use std::f32::consts::PI;
 use std::sync::{Arc, OnceLock};
@@ -16,21 +18,28 @@ use aureole_math::{Bounds3, Id, Point2, Point3, Transform, Vector3, offset_ray_o
 use aureole_spectrum::{Spectrum, SpectrumRole, luminance};
 
 use super::{LightContext, LightOps, LightSample};
+use crate::bsdf::EmissionContext;
 use crate::shape::ShapeSample;
-use crate::{Element, Resolver, Shape, SurfacePoint, Texture, TextureContext, spectrum_texture};
+use crate::{Element, Material, Resolver, Shape, SurfacePoint, Texture, TextureContext, spectrum_texture};
 
 /// A shining surface.
 #[derive(Clone, Debug)]
 pub struct Area {
     shape: Id<Shape>,
-    radiance: Id<Texture>,
-    two_sided: bool,
+    source: Source,
     /// The power to scale to, if positive.
     power: f32,
     /// The factor that does it, once its shape and texture can be asked.
     scale: OnceLock<f32>,
     /// Where the shape is, if it is in a group that an instance places.
     place: Option<Arc<Place>>,
+}
+
+/// What says how much it shines.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    Texture { radiance: Id<Texture>, two_sided: bool },
+    Material(Id<Material>),
 }
 
 /// Where an instance puts a shape.
@@ -107,8 +116,7 @@ impl Element for Area {
         let radiance = spectrum_texture(params, resolver, "radiance", 1.0, SpectrumRole::Illuminant)?;
         Ok(Self {
             shape,
-            radiance,
-            two_sided: params.bool("two_sided", false)?,
+            source: Source::Texture { radiance, two_sided: params.bool("two_sided", false)? },
             power: params.float("power", 0.0)?,
             scale: OnceLock::new(),
             place: None,
@@ -117,13 +125,26 @@ impl Element for Area {
 }
 
 impl Area {
+    /// The light of a shape whose material shines.
+    pub fn of_material(shape: Id<Shape>, material: Id<Material>) -> Self {
+        let source = Source::Material(material);
+        Self { shape, source, power: 0.0, scale: OnceLock::new(), place: None }
+    }
+
+    /// Radiance from a point with normal `ng`, towards a direction at a cosine to it.
     #[inline]
-    fn radiance(&self, at: &LightContext<'_>, uv: Point2, cos: f32) -> Spectrum {
-        if cos > 0.0 || self.two_sided {
-            let radiance = TextureContext::at_uv(at.textures, at.wavelengths, uv).spectrum(self.radiance);
-            if self.power > 0.0 { radiance * self.scale(at) } else { radiance }
-        } else {
-            Spectrum::ZERO
+    fn radiance(&self, at: &LightContext<'_>, p: Point3, ng: Vector3, uv: Point2, cos: f32) -> Spectrum {
+        let texture = TextureContext::at_uv(at.textures, at.wavelengths, uv);
+        match self.source {
+            Source::Texture { radiance, two_sided } if cos > 0.0 || two_sided => {
+                let radiance = texture.spectrum(radiance);
+                if self.power > 0.0 { radiance * self.scale(at) } else { radiance }
+            }
+            Source::Texture { .. } => Spectrum::ZERO,
+            Source::Material(material) => {
+                let texture = TextureContext { p, n: ng, ..texture };
+                EmissionContext { texture, materials: at.materials, cos }.nested(material)
+            }
         }
     }
 }
@@ -135,11 +156,26 @@ impl Area {
     }
 
     fn unscaled_power(&self, at: &LightContext<'_>) -> f32 {
-        let sides = if self.two_sided { 2.0 } else { 1.0 };
-        let mean = at.textures[self.radiance].mean(at.textures);
+        let mean = match self.source {
+            Source::Texture { radiance, two_sided } => {
+                at.textures[radiance].mean(at.textures) * if two_sided { 2.0 } else { 1.0 }
+            }
+            Source::Material(_) => self.mean_of_material(at),
+        };
         let shape = &at.shapes[self.shape];
         let area = self.place.as_ref().map_or_else(|| shape.area(), |place| place.area(shape));
-        luminance(mean.rgb()) * area * PI * sides
+        luminance(mean.rgb()) * area * PI
+    }
+
+    /// Mean radiance of both sides together, over uv, at a middling angle.
+    fn mean_of_material(&self, at: &LightContext<'_>) -> Spectrum {
+        const SIDE: usize = 16;
+        let grid = |i: usize| (i as f32 + 0.5) / SIDE as f32;
+        let place = |i: usize| Point2::new(grid(i % SIDE), grid(i / SIDE));
+        let sum: Spectrum = (0..SIDE * SIDE)
+            .flat_map(|i| [0.6, -0.6].map(|cos| self.radiance(at, Point3::ORIGIN, Vector3::Z, place(i), cos)))
+            .sum();
+        sum / (SIDE * SIDE) as f32
     }
 
     fn scale(&self, at: &LightContext<'_>) -> f32 {
@@ -156,7 +192,7 @@ impl LightOps for Area {
             Some(place) => place.sample(shape, reference, u)?,
         };
         let wi = (drawn.p - reference).try_normalized()?;
-        let radiance = self.radiance(at, drawn.uv, -drawn.ng.dot(wi));
+        let radiance = self.radiance(at, drawn.p, drawn.ng, drawn.uv, -drawn.ng.dot(wi));
         let target = offset_ray_origin(drawn.p, drawn.error, drawn.ng, -wi);
         (!radiance.is_black()).then_some(LightSample {
             wi,
@@ -184,7 +220,7 @@ impl LightOps for Area {
 
     #[inline]
     fn emitted(&self, at: &LightContext<'_>, surface: &SurfacePoint, w: Vector3) -> Spectrum {
-        self.radiance(at, surface.uv, surface.ng.dot(w))
+        self.radiance(at, surface.p, surface.ng, surface.uv, surface.ng.dot(w))
     }
 
     fn power(&self, at: &LightContext<'_>, _: &Bounds3) -> f32 {

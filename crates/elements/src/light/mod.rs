@@ -16,7 +16,7 @@ use std::fmt::Debug;
 use aureole_math::{Arena, Bounds3, Point2, Point3, Transform, Vector3};
 use aureole_spectrum::{Spectrum, Wavelengths};
 
-use crate::{Shape, SurfacePoint, Texture};
+use crate::{Material, Shape, SurfacePoint, Texture};
 
 pub use area::Area;
 pub use constant::ConstantEnvironment;
@@ -36,6 +36,8 @@ pub struct LightContext<'a> {
     pub textures: &'a Arena<Texture>,
     /// All shapes of the scene.
     pub shapes: &'a Arena<Shape>,
+    /// All materials of the scene: some shine.
+    pub materials: &'a Arena<Material>,
     /// What the lanes of radiance mean.
     pub wavelengths: Wavelengths,
 }

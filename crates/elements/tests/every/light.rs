@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use aureole_desc::{Family, Value};
-use aureole_elements::light::LightContext;
+use aureole_elements::light::{Area, LightContext};
 use aureole_elements::{Light, Shape, SurfacePoint};
 use aureole_math::{Bounds3, Id, Pcg32, Point2, Point3, Ray, Transform, Vector3, warp};
 use aureole_spectrum::{Wavelengths, luminance};
@@ -149,6 +149,25 @@ fn examples(world: &mut World) -> Vec<Example> {
             });
         }
     }
+    for is_two_sided in [false, true] {
+        let node = world.add(
+            Family::Bsdf,
+            "open_pbr",
+            [
+                ("emission_luminance", Float(3.0)),
+                ("emission_color", glow.clone()),
+                ("coat_weight", Float(0.8)),
+                ("coat_color", rgb(0.9, 0.5, 0.4)),
+                ("fuzz_weight", Float(0.3)),
+                ("geometry_thin_walled", Value::Bool(is_two_sided)),
+            ],
+        );
+        let material = world.material_of(&node);
+        let shape = world.shape("sphere", params([("radius", Float(0.7)), ("emission", node)]));
+        let light = Area::of_material(shape, material).into();
+        let label = "ball of a material that shines";
+        examples.push(Example { label, light, shape: Some(shape), is_two_sided, place: None });
+    }
     // In groups, whose instances may stretch and mirror them.
     let squeeze = Transform::translate(Vector3::new(0.2, 0.1, 0.4))
         * Transform::rotate(Vector3::new(1.0, 2.0, 0.3), 35.0)
@@ -161,7 +180,7 @@ fn examples(world: &mut World) -> Vec<Example> {
             is_placed.then_some(Example { light, place: Some(squeeze), ..*example })
         })
         .collect();
-    let bright = params([("radiance", glow), ("power", Float(5.0))]);
+    let bright = params([("radiance", glow.clone()), ("power", Float(5.0))]);
     let shape = examples.last().and_then(|example| example.shape);
     let light = world.light("area", bright, shape);
     examples.push(Example {
@@ -176,7 +195,12 @@ fn examples(world: &mut World) -> Vec<Example> {
 }
 
 fn context(world: &World) -> LightContext<'_> {
-    LightContext { textures: &world.textures, shapes: &world.shapes, wavelengths: Wavelengths::RGB }
+    LightContext {
+        textures: &world.textures,
+        shapes: &world.shapes,
+        materials: &world.materials,
+        wavelengths: Wavelengths::RGB,
+    }
 }
 
 const REFERENCES: [Point3; 3] =

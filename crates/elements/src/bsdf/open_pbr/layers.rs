@@ -1,5 +1,6 @@
 //! The layers of an OpenPBR surface at a point, as weighted lobes.
 
+use aureole_math::{Frame, Vector3};
 use aureole_spectrum::Spectrum;
 
 use super::super::conductor::{Metal, Response};
@@ -7,9 +8,9 @@ use super::super::dielectric::Glass;
 use super::super::microfacet::{Distribution, Microfacet};
 use super::super::subsurface::looks_like;
 use super::super::{
-    Bsdf, ConductorLobe, DielectricLobe, DiffuseTransmissionLobe, Film, GlossLobe, Interior, Lobe, LobeOps,
-    MaterialContext, NullLobe, PrismLobe, RoughConductorLobe, RoughDielectricLobe, RoughDiffuseLobe,
-    SheenLobe, SubsurfaceLobe, ThinDielectricLobe, fresnel,
+    Bsdf, ConductorLobe, DielectricLobe, DiffuseTransmissionLobe, EmissionContext, Film, GlossLobe, Interior,
+    Lobe, LobeOps, MaterialContext, NullLobe, PrismLobe, RoughConductorLobe, RoughDielectricLobe,
+    RoughDiffuseLobe, RoughPrismLobe, SheenLobe, SubsurfaceLobe, ThinDielectricLobe, fresnel,
 };
 use super::{Finish, OpenPbr};
 use crate::TextureContext;
@@ -41,13 +42,77 @@ pub(super) fn evaluate(m: &OpenPbr, at: &MaterialContext<'_>, weight: f32, out: 
     let opacity = at.texture.float(m.opacity).clamp(0.0, 1.0);
     out.push(NullLobe::CLEAR, weight * (1.0 - opacity), at.frame, at.frame.n);
     let mut light = Light { weight: weight * opacity, tint: Spectrum::ONE };
-    let cos = at.wo.dot(at.frame.n);
-    if cos <= 0.0 {
-        return from_inside(m, at, &light, out);
+    let (first, n) = (out.len(), at.frame.n);
+    let at_base = m.base_bearing.at(at);
+    let cos = at.wo.dot(at_base.frame.n);
+    if cos > 0.0 {
+        let at_coat = m.coat_bearing.at(at);
+        fuzz(m, &between(m, &at_base, &at_coat), &mut light, out);
+        let coated = coat(m, &at_coat, &mut light, out);
+        base(m, &at_base, cos, &light, coated, out);
+    } else {
+        from_inside(m, &at_base, &light, out);
     }
-    fuzz(m, at, &mut light, out);
-    let coated = coat(m, at, cos, &mut light, out);
-    base(m, at, cos, &light, coated, out);
+    if m.base_bearing.is_turned() || m.coat_bearing.is_turned() {
+        out.rebase(first, n, true);
+    }
+}
+
+/// Where fuzz lies: on coat where there is some, and on the base elsewhere [specification, "Fuzz"].
+fn between<'a>(
+    m: &OpenPbr,
+    at_base: &MaterialContext<'a>,
+    at_coat: &MaterialContext<'a>,
+) -> MaterialContext<'a> {
+    if !m.base_bearing.is_turned() && !m.coat_bearing.is_turned() {
+        return *at_base;
+    }
+    let n = at_base.frame.n.lerp(at_coat.frame.n, m.coat.weight_at(&at_base.texture));
+    let n = n.try_normalized().unwrap_or(at_base.frame.n);
+    MaterialContext { frame: Frame::from_normal_and_tangent(n, at_base.frame.s), ..*at_base }
+}
+
+/// The light that the base sends out, less what fuzz and coat keep [specification, "Emission"]. Angles are those to the
+/// surface itself, whatever the normals of the layers.
+pub(super) fn emitted(m: &OpenPbr, at: &EmissionContext<'_>) -> Spectrum {
+    let (texture, cos) = (&at.texture, if m.is_thin_walled { at.cos.abs() } else { at.cos });
+    if cos <= 0.0 {
+        return Spectrum::ZERO;
+    }
+    let opacity = texture.float(m.opacity).clamp(0.0, 1.0);
+    let radiance = texture.spectrum(m.emission.color).max_zero() * texture.float(m.emission.weight).max(0.0);
+    let coat_weight = m.coat.weight_at(texture);
+    // The way out alone.
+    let color = m.coat.color_at(texture).map(|c| c.powf(0.5 * passages(m, cos)));
+    let coated =
+        Spectrum::ONE.lerp(color, coat_weight) * (1.0 - coat_weight * coat_reflectance(m, texture, cos));
+    let fuzzy = 1.0 - m.fuzz.weight_at(texture) * fuzz_reflectance(m, texture, cos);
+    radiance * coated * (opacity * fuzzy)
+}
+
+/// The share of light that fuzz keeps from what is below it.
+fn fuzz_reflectance(m: &OpenPbr, at: &TextureContext<'_>, cos: f32) -> f32 {
+    let white = SheenLobe::new(Spectrum::ONE, at.float(m.fuzz_roughness));
+    white.albedo(Vector3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos))[0]
+}
+
+fn coat_facets(m: &OpenPbr, at: &TextureContext<'_>) -> Option<Microfacet> {
+    let (roughness, anisotropy) = finish(&m.coat_finish, at);
+    facets(roughness, anisotropy)
+}
+
+/// The share of light that the coat's surface reflects.
+fn coat_reflectance(m: &OpenPbr, at: &TextureContext<'_>, cos: f32) -> f32 {
+    match coat_facets(m, at) {
+        Some(surface) => m.coat_gloss.at(&surface, cos),
+        None => fresnel::dielectric(cos, m.coat_ior).reflectance,
+    }
+}
+
+/// How much longer than straight up the way through the coat is.
+fn passages(m: &OpenPbr, cos: f32) -> f32 {
+    let sin2 = (1.0 - cos * cos) / (m.coat_ior * m.coat_ior);
+    1.0 / (1.0 - sin2).max(0.01).sqrt()
 }
 
 /// What light meets that wants to leave: glass, or the boundary of a body that scatters. Who is in a body has been let in
@@ -58,7 +123,7 @@ fn from_inside(m: &OpenPbr, at: &MaterialContext<'_>, light: &Light, out: &mut B
         (metalness(m, texture), m.transmission.weight_at(texture), m.subsurface.weight_at(texture));
     let roughness = roughness(m, texture);
     let whole = |weight| Light { weight: light.weight * weight, tint: light.tint };
-    if metal < 1.0 && glass < 1.0 && body > 0.0 && !m.is_thin_walled {
+    if metal < 1.0 && glass < 1.0 && body > 0.0 {
         if glass > 0.0 {
             translucent(m, at, &whole(1.0), roughness, out);
         } else {
@@ -66,9 +131,6 @@ fn from_inside(m: &OpenPbr, at: &MaterialContext<'_>, light: &Light, out: &mut B
         }
     } else {
         translucent(m, at, &whole(glass * (1.0 - metal)), roughness, out);
-        if m.is_thin_walled && body > 0.0 {
-            thin_body(m, at, &whole((1.0 - metal) * (1.0 - glass) * body), out);
-        }
     }
 }
 
@@ -126,38 +188,24 @@ fn roughness(m: &OpenPbr, at: &TextureContext<'_>) -> f32 {
 fn fuzz(m: &OpenPbr, at: &MaterialContext<'_>, light: &mut Light, out: &mut Bsdf) {
     let weight = m.fuzz.weight_at(&at.texture);
     if weight > 0.0 {
-        let roughness = at.texture.float(m.fuzz_roughness);
-        out.push(
-            SheenLobe::new(m.fuzz.color_at(&at.texture), roughness),
-            light.weight * weight,
-            at.frame,
-            at.frame.n,
-        );
-        let wo = at.frame.to_local(at.wo);
-        let taken = SheenLobe::new(Spectrum::ONE, roughness).albedo(wo)[0];
-        light.weight *= 1.0 - weight * taken;
+        let lobe = SheenLobe::new(m.fuzz.color_at(&at.texture), at.texture.float(m.fuzz_roughness));
+        out.push(lobe, light.weight * weight, at.frame, at.frame.n);
+        light.weight *= 1.0 - weight * fuzz_reflectance(m, &at.texture, at.wo.dot(at.frame.n));
     }
 }
 
 /// Adds the coat's reflection; gives how much of the base is coated.
-fn coat(m: &OpenPbr, at: &MaterialContext<'_>, cos: f32, light: &mut Light, out: &mut Bsdf) -> f32 {
-    let weight = m.coat.weight_at(&at.texture);
+fn coat(m: &OpenPbr, at: &MaterialContext<'_>, light: &mut Light, out: &mut Bsdf) -> f32 {
+    let (weight, cos) = (m.coat.weight_at(&at.texture), at.wo.dot(at.frame.n).max(1e-4));
     if weight == 0.0 {
         return 0.0;
     }
-    let (roughness, anisotropy) = finish(&m.coat_finish, &at.texture);
-    let surface = facets(roughness, anisotropy);
+    let surface = coat_facets(m, &at.texture);
     let glass = Glass { eta: m.coat_ior, reflectance: light.tint, transmittance: Spectrum::ONE, film: None };
     out.push(GlossLobe { glass, surface }, light.weight * weight, at.frame, at.frame.n);
-    let taken = match surface {
-        Some(surface) => m.coat_gloss.at(&surface, cos),
-        None => fresnel::dielectric(cos, m.coat_ior).reflectance,
-    };
     // Absorption on the way in and out, both as long as the viewer's.
-    let sin2 = (1.0 - cos * cos) / (m.coat_ior * m.coat_ior);
-    let passages = 1.0 / (1.0 - sin2).max(0.01).sqrt();
-    let color = m.coat.color_at(&at.texture).map(|c| c.powf(passages));
-    light.weight *= 1.0 - weight * taken;
+    let color = m.coat.color_at(&at.texture).map(|c| c.powf(passages(m, cos)));
+    light.weight *= 1.0 - weight * coat_reflectance(m, &at.texture, cos);
     light.tint *= Spectrum::ONE.lerp(color, weight);
     weight
 }
@@ -236,7 +284,10 @@ fn translucent(m: &OpenPbr, at: &MaterialContext<'_>, light: &Light, roughness: 
     let (weight, frame, n) = (light.weight, at.frame, at.frame.n);
     let lobe: Lobe = match facets(roughness, anisotropy) {
         _ if m.is_thin_walled => ThinDielectricLobe { glass }.into(),
-        Some(surface) => RoughDielectricLobe { glass, surface }.into(),
+        Some(surface) => match m.dispersion {
+            Some(spread) => RoughPrismLobe { glass, surface, spread }.into(),
+            None => RoughDielectricLobe { glass, surface }.into(),
+        },
         None => match m.dispersion {
             Some(spread) => PrismLobe { glass, spread }.into(),
             None => DielectricLobe { glass }.into(),

@@ -26,6 +26,9 @@
 //! | `thin_film_ior` | float | 1.4 | index of the film |
 //! | `geometry_opacity` | texture | 1 | 0: a hole |
 //! | `geometry_thin_walled` | bool | false | glass is a pane without inside |
+//! | `geometry_normal`, `geometry_tangent` | texture | | shading normal and tangent of the base, as in `normal_map` |
+//! | `geometry_coat_normal`, `geometry_coat_tangent` | texture | | those of the coat |
+//! | `emission_luminance`, `emission_color` | texture | 0, 1 | radiance that the base sends out |
 //!
 //! Glass with a depth and bodies that scatter are filled (see [`Interior`](super::Interior)): light is absorbed on its way and walks at
 //! random; the shape should be closed. The boundary of a scattering body spreads light that leaves, as that of
@@ -33,25 +36,31 @@
 //! boundary taken into account (the specification's own formula leaves it out). A thin-walled body scatters half of the
 //! light back and half through, by anisotropy.
 //!
-//! *Limits.* Dispersion has three wavelengths, one a colour, and smooth glass only. Light of its own is a shape's (`emission`),
-//! and the coat follows the base's normal: `emission_*` and `geometry_coat_normal` are read with a warning. Fuzz is
+//! Shapes of a material with an `emission_luminance` are area lights, by one unit of radiance a nit of white; coat and fuzz keep
+//! some of it, more at grazing angles. Their outer side shines, and both of a thin-walled one, which looks the same from
+//! either side.
+//!
+//! *Limits.* Dispersion has three wavelengths, one a colour. A shape's own `emission` hides that of its material. Fuzz is
 //! [`sheen`](super::sheen)'s.
 //!
 //! # References
 //! [Andersson et al. 2024] "OpenPBR Surface Specification", version 1.1, Academy Software Foundation.
 
+mod bearing;
 mod layers;
 
 use std::sync::Arc;
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::Id;
+use aureole_math::{Arena, Id};
 use aureole_spectrum::{Spectrum, SpectrumRole, SpectrumSource};
 
 use super::directional::AlbedoTable;
 use super::half_space::Albedos;
-use super::{Bsdf, MaterialContext, MaterialOps};
+use super::{Bsdf, EmissionContext, Material, MaterialContext, MaterialOps};
 use crate::{Element, Resolver, Texture, TextureContext, float_texture, spectrum_texture};
+
+use bearing::Bearing;
 
 /// A colour with its weight.
 #[derive(Clone, Copy, Debug)]
@@ -109,6 +118,11 @@ pub struct OpenPbr {
     film_thickness: Id<Texture>,
     film_ior: f32,
     opacity: Id<Texture>,
+    /// Luminance and colour of light of its own.
+    emission: Weighted,
+    shines: bool,
+    base_bearing: Bearing,
+    coat_bearing: Bearing,
     is_thin_walled: bool,
     /// What the base's and the coat's surface reflect.
     gloss: AlbedoTable,
@@ -118,9 +132,6 @@ pub struct OpenPbr {
 const fn doc(name: &'static str, ty: &'static str, default: &'static str, doc: &'static str) -> ParamDoc {
     ParamDoc { name, ty, default, doc }
 }
-
-/// Parameters that are read but not rendered.
-const UNUSED: [&str; 3] = ["emission_luminance", "emission_color", "geometry_coat_normal"];
 
 impl Element for OpenPbr {
     const SUMMARY: &'static str = "The OpenPBR surface, version 1.1: one material for nearly everything.";
@@ -160,16 +171,23 @@ impl Element for OpenPbr {
         doc("thin_film_ior", "float", "1.4", "its index"),
         doc("geometry_opacity", "texture", "1", "0: a hole"),
         doc("geometry_thin_walled", "bool", "false", "glass is a pane without inside"),
-        doc("emission_luminance", "float", "0", "not rendered: light is a shape's"),
+        doc("emission_luminance", "texture", "0", "radiance that the base sends out"),
+        doc("emission_color", "texture", "1", "its colour"),
+        doc("geometry_normal", "texture", "", "shading normal of base and fuzz, [-1, 1] as [0, 1]"),
+        doc("geometry_tangent", "texture", "", "tangent of the base's highlights, likewise"),
+        doc("geometry_coat_normal", "texture", "", "shading normal of the coat, likewise"),
+        doc("geometry_coat_tangent", "texture", "", "tangent of the coat's highlights, likewise"),
     ];
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
-        for name in UNUSED {
-            let at = params.span(name);
-            if params.take(name).is_some() {
-                resolver.report().warn(format!("`{name}` of `open_pbr` is not rendered"), at);
-            }
-        }
+        let emission = Weighted {
+            weight: float_texture(params, resolver, "emission_luminance", 0.0)?,
+            color: spectrum_texture(params, resolver, "emission_color", 1.0, SpectrumRole::Illuminant)?,
+        };
+        let luminance = resolver.textures()[emission.weight].mean(resolver.textures());
+        let base_bearing = Bearing::from_params(params, resolver, ["geometry_normal", "geometry_tangent"])?;
+        let coat_bearing =
+            Bearing::from_params(params, resolver, ["geometry_coat_normal", "geometry_coat_tangent"])?;
         let mut float =
             |params: &mut Params, name: &str, default| float_texture(params, resolver, name, default);
         let (diffuse_roughness, metalness) =
@@ -233,6 +251,10 @@ impl Element for OpenPbr {
             film_weight,
             film_thickness,
             opacity,
+            emission,
+            shines: luminance.max_element() > 0.0,
+            base_bearing,
+            coat_bearing,
             gloss: AlbedoTable::gloss(specular_ior),
             coat_gloss: AlbedoTable::gloss(coat_ior),
         })
@@ -259,6 +281,20 @@ fn dispersion(params: &mut Params, ior: f32) -> Result<Option<[f32; 3]>, SceneEr
 
 impl MaterialOps for OpenPbr {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
-        layers::evaluate(self, at, weight, out);
+        if self.is_thin_walled && at.wo.dot(at.frame.n) < 0.0 {
+            // A sheet is the same from behind.
+            let behind = MaterialContext { frame: at.frame.flipped(), ng: -at.ng, ..*at };
+            layers::evaluate(self, &behind, weight, out);
+        } else {
+            layers::evaluate(self, at, weight, out);
+        }
+    }
+
+    fn shines(&self, _: &Arena<Material>) -> bool {
+        self.shines
+    }
+
+    fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {
+        layers::emitted(self, at)
     }
 }

@@ -284,6 +284,34 @@ pub(super) fn examples(world: &mut World) -> Vec<Example> {
                 ],
             )
         }),
+        ("open_pbr frosted prism", true, {
+            world.add(
+                bsdf,
+                "open_pbr",
+                [
+                    ("transmission_weight", Float(1.0)),
+                    ("specular_roughness", Float(0.5)),
+                    ("transmission_dispersion_scale", Float(1.0)),
+                ],
+            )
+        }),
+        ("open_pbr under bent normals", false, {
+            let coat_bent = world.add(Family::Texture, "constant", [("value", rgb(0.4, 0.6, 0.9))]);
+            let tangent = world.add(Family::Texture, "constant", [("value", rgb(0.8, 0.9, 0.5))]);
+            world.add(
+                bsdf,
+                "open_pbr",
+                [
+                    ("geometry_normal", bent.clone()),
+                    ("geometry_coat_normal", coat_bent),
+                    ("geometry_coat_tangent", tangent),
+                    ("coat_weight", Float(0.7)),
+                    ("coat_roughness", Float(0.4)),
+                    ("coat_roughness_anisotropy", Float(0.6)),
+                    ("fuzz_weight", Float(0.3)),
+                ],
+            )
+        }),
         ("measured isotropic", false, measured(world, 1)),
         ("measured anisotropic", false, measured(world, 4)),
         ("merl", true, {
