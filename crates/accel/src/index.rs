@@ -2,6 +2,7 @@
 
 use aureole_math::{Bounds3, Ray};
 
+use crate::big::Big;
 use crate::binary;
 use crate::bvh::{self, Below, BinaryNode, BinaryTree, Bvh, Bvh8, CompactNode, Leaf, Node16, VisitLeaf};
 use crate::grid::Grid;
@@ -28,7 +29,7 @@ pub(crate) enum Index {
 pub(crate) struct Indexed {
     pub index: Index,
     /// Things in the order of the groups.
-    pub order: Vec<u32>,
+    pub order: Big<u32>,
     /// Each group's first in `order` and how many it has.
     pub groups: Vec<[u32; 2]>,
 }
@@ -36,7 +37,7 @@ pub(crate) struct Indexed {
 impl Index {
     /// Builds the structure over `count` things. A group has up to `lanes` of them.
     pub(crate) fn build(count: usize, things: &impl Things, lanes: usize, config: &Config) -> Indexed {
-        let all = || (0..count as u32).collect();
+        let all = || Big::from((0..count as u32).collect::<Vec<_>>());
         match config.structure {
             Structure::List => {
                 let box_around = (0..count as u32).fold(Bounds3::EMPTY, |b, i| b.union(things.bounds(i)));
@@ -66,7 +67,7 @@ impl Index {
                         groups.push([first as u32, count as u32]);
                     }
                 }
-                let order = std::mem::take(&mut tree.order).to_vec();
+                let order = std::mem::take(&mut tree.order);
                 tree.built_sah_cost = tree.stats().sah_cost;
                 Indexed { index: Self::Binary(tree), order, groups }
             }
@@ -77,7 +78,7 @@ impl Index {
                     (Layout::Fast, Width::Sixteen) => Self::Sixteen(Bvh::widened(&built.bvh)),
                     (Layout::Fast, Width::Auto | Width::Eight) => Self::Wide(built.bvh),
                 };
-                Indexed { index, order: built.order.to_vec(), groups: built.groups }
+                Indexed { index, order: built.order, groups: built.groups }
             }
         }
     }

@@ -3,59 +3,71 @@
 //! # References
 //! [Wald 2007] "On fast Construction of SAH-based Bounding Volume Hierarchies".
 
-use glam::Vec4;
 use rayon::prelude::*;
 
+use super::bins::{BINS, BinCut, CutParts, Fill, FillAndCut, Partition, Slices};
 use super::top_down::Cut;
 use super::tree::{Extent, Item};
+use crate::simd;
 
-/// Added to a small number, it leaves that number in the lowest bits.
-const MAGIC: f32 = (1 << 23) as f32;
-/// Bins at most.
-const BINS: usize = 32;
 /// Bins at most of few items, whose tables would take longer to clear than to fill.
 const FEW_BINS: usize = 8;
 /// Items whose cut is sought by sorting.
 const FEW_ITEMS: usize = 8;
 /// Items from which the bins of one node are filled by many threads.
 const PARALLEL_BINS: usize = 1 << 16;
+/// Items up to which slices are laid over the centers. Those of more items are laid over the boxes, which are known before:
+/// a triangle is small beside so many.
+const LOOK_AT_CENTERS: usize = 512;
 
 /// Cuts where the sum of area times number is least.
 pub(super) struct Binned;
 
 impl Cut for Binned {
-    fn cut(&self, items: &mut [Item]) -> usize {
-        let centers = centers(items);
+    type Item = Item;
+    /// A box around twice the centers.
+    type Hint = Extent;
+
+    fn index(item: &Item) -> u32 {
+        item.index()
+    }
+
+    #[inline(always)]
+    fn bounds(&self, item: &Item) -> Extent {
+        item.bounds()
+    }
+
+    fn hint(&self, items: &[Item]) -> Extent {
+        centers(items)
+    }
+
+    fn cut(&self, items: &mut [Item], hint: &Extent) -> (usize, [Extent; 2]) {
+        let centers = if items.len() <= LOOK_AT_CENTERS { centers(items) } else { *hint };
         if items.len() <= FEW_ITEMS {
-            return sweep(items, &centers);
+            return (sweep(items, &centers), [centers; 2]);
         }
-        Binning::new(&centers, items.len()).map_or(0, |binning| binning.cut(items))
+        let Some(slices) = Slices::new(&centers, items.len()) else { return (0, [centers; 2]) };
+        let best = cheapest(&slices, items);
+        let middle = simd::run(Partition { slices: &slices, items, axis: best.axis, bin: best.bin });
+        (middle, best.extents.map(|extent| extent.doubled()))
     }
 }
 
-/// A cut by bins: what it costs and the boxes of its sides.
-pub(super) struct Cheapest {
-    pub cost: f32,
-    pub extents: [Extent; 2],
-    binning: Binning,
-    axis: usize,
-    bin: usize,
+/// The cheapest cut of items, and the slices between which it lies. `None` when all centers are in one place.
+pub(super) fn best(items: &[Item]) -> Option<(BinCut, Slices)> {
+    let slices = Slices::new(&centers(items), items.len())?;
+    Some((cheapest(&slices, items), slices))
 }
 
-/// The cheapest cut of items. `None` when all centers are in one place.
-pub(super) fn best(items: &[Item]) -> Option<Cheapest> {
-    let binning = Binning::new(&centers(items), items.len())?;
-    let bins = binning.fill::<BINS>(items);
-    let (cost, axis, bin) = binning.cheapest(&bins);
-    let around = |boxes: &[Extent]| boxes.iter().fold(Extent::EMPTY, |all, extent| all.union(extent));
-    let (left, right) = bins.boxes[axis].split_at(bin);
-    Some(Cheapest { cost, extents: [around(left), around(right)], binning, axis, bin })
-}
-
-impl Cheapest {
-    /// Moves the items of one side to the front; their number.
-    pub(super) fn apply(&self, items: &mut [Item]) -> usize {
-        self.binning.partition(items, self.axis, self.bin)
+fn cheapest(slices: &Slices, items: &[Item]) -> BinCut {
+    if items.len() >= PARALLEL_BINS {
+        let fill = |items| simd::run(Fill::<BINS> { slices, items });
+        let parts: Vec<_> = items.par_chunks(PARALLEL_BINS / 4).map(fill).collect();
+        simd::run(CutParts { slices, parts: &parts })
+    } else if slices.count() > FEW_BINS {
+        simd::run(FillAndCut(Fill::<BINS> { slices, items }))
+    } else {
+        simd::run(FillAndCut(Fill::<FEW_BINS> { slices, items }))
     }
 }
 
@@ -91,127 +103,4 @@ fn sweep(items: &mut [Item], centers: &Extent) -> usize {
         }
     }
     best.1
-}
-
-/// Maps centers to bins, on all axes at once.
-#[derive(Clone, Copy)]
-struct Binning {
-    low: Vec4,
-    scale: Vec4,
-    bins: usize,
-}
-
-/// Boxes and numbers of the items in each bin of each axis.
-struct Bins<const B: usize> {
-    boxes: [[Extent; B]; 3],
-    counts: [[u32; B]; 3],
-}
-
-impl Binning {
-    /// `None` when all centers are in one place.
-    fn new(centers: &Extent, items: usize) -> Option<Self> {
-        let bins = BINS.min(4 + items / 20);
-        let size = centers.max - centers.min;
-        // A little less than the whole range, so that the largest center falls into the last bin.
-        let scale = Vec4::splat(bins as f32 * (1.0 - 1e-6)) / size;
-        let axis = |i: usize| size[i] > 0.0 && scale[i].is_finite();
-        if !(0..3).any(axis) {
-            return None;
-        }
-        let scale = Vec4::from_array([0, 1, 2, 3].map(|i| if i < 3 && axis(i) { scale[i] } else { 0.0 }));
-        Some(Self { low: centers.min, scale, bins })
-    }
-
-    /// The bins on all axes. Adding 2²³ to a small number leaves it rounded in the lowest bits, which is much cheaper than a
-    /// conversion that watches out for what is no small number.
-    #[inline(always)]
-    fn bin(&self, item: &Item) -> [usize; 3] {
-        let at = (item.center() - self.low) * self.scale - Vec4::splat(0.5);
-        let [x, y, z, _] =
-            (at.max(Vec4::ZERO) + Vec4::splat(MAGIC)).to_array().map(|x| x.to_bits() as usize % BINS);
-        [x, y, z]
-    }
-
-    /// The bin on one axis: the same arithmetic.
-    #[inline(always)]
-    fn bin_on(&self, item: &Item, axis: usize) -> usize {
-        let at = (item.center_on(axis) - self.low[axis]) * self.scale[axis] - 0.5;
-        (at.max(0.0) + MAGIC).to_bits() as usize % BINS
-    }
-
-    /// Moves the items of one side of the cheapest cut to the front; their number.
-    fn cut(&self, items: &mut [Item]) -> usize {
-        let (_, axis, bin) = if self.bins > FEW_BINS {
-            self.cheapest(&self.fill::<BINS>(items))
-        } else {
-            self.cheapest(&self.fill::<FEW_BINS>(items))
-        };
-        self.partition(items, axis, bin)
-    }
-
-    fn partition(&self, items: &mut [Item], axis: usize, bin: usize) -> usize {
-        let mut middle = 0;
-        for i in 0..items.len() {
-            let is_left = self.bin_on(&items[i], axis) < bin;
-            items.swap(i, middle);
-            middle += usize::from(is_left);
-        }
-        middle
-    }
-
-    fn fill<const B: usize>(&self, items: &[Item]) -> Bins<B> {
-        let of = |items: &[Item]| {
-            let mut bins = Bins { boxes: [[Extent::EMPTY; B]; 3], counts: [[0; B]; 3] };
-            for item in items {
-                for (axis, bin) in self.bin(item).into_iter().enumerate() {
-                    bins.boxes[axis][bin % B] = bins.boxes[axis][bin % B].union(&item.bounds());
-                    bins.counts[axis][bin % B] += 1;
-                }
-            }
-            bins
-        };
-        if items.len() < PARALLEL_BINS {
-            return of(items);
-        }
-        let parts: Vec<Bins<B>> = items.par_chunks(PARALLEL_BINS / 4).map(of).collect();
-        parts.into_iter().reduce(|a, b| a.merged(&b)).unwrap_or_else(|| of(&[]))
-    }
-
-    /// The smallest sum of area times number, the axis and the first bin of the right side.
-    fn cheapest<const B: usize>(&self, bins: &Bins<B>) -> (f32, usize, usize) {
-        let mut best = (f32::INFINITY, 0, 1);
-        for axis in (0..3).filter(|&axis| self.scale[axis] > 0.0) {
-            let (boxes, counts) = (&bins.boxes[axis][..self.bins], &bins.counts[axis][..self.bins]);
-            let mut right_cost = [0.0; B];
-            let (mut extent, mut count) = (Extent::EMPTY, 0);
-            for bin in (1..self.bins).rev() {
-                extent = extent.union(&boxes[bin]);
-                count += counts[bin];
-                right_cost[bin] = extent.half_area() * count as f32;
-            }
-            let right = count;
-            (extent, count) = (Extent::EMPTY, 0);
-            for bin in 1..self.bins {
-                extent = extent.union(&boxes[bin - 1]);
-                count += counts[bin - 1];
-                let cost = extent.half_area() * count as f32 + right_cost[bin];
-                if cost < best.0 && count > 0 && count < right + counts[0] {
-                    best = (cost, axis, bin);
-                }
-            }
-        }
-        best
-    }
-}
-
-impl<const B: usize> Bins<B> {
-    fn merged(mut self, other: &Self) -> Self {
-        for axis in 0..3 {
-            for bin in 0..B {
-                self.boxes[axis][bin] = self.boxes[axis][bin].union(&other.boxes[axis][bin]);
-                self.counts[axis][bin] += other.counts[axis][bin];
-            }
-        }
-        self
-    }
 }

@@ -35,14 +35,13 @@ const REINSERTED: f32 = 0.3;
 
 /// Builds a hierarchy over boxes, whose leaves hold groups of up to `lanes` primitives.
 pub(crate) fn build(count: usize, things: &impl Things, lanes: usize, config: &Config) -> Built {
-    let mut items = items(count, things);
     let tree = match config.quality {
         Quality::Fast => {
-            let curve = Linear::sort(&mut items);
-            top_down::build(items, lanes, &curve)
+            let curve = Linear(things);
+            top_down::build(curve.keys(count), lanes, &curve)
         }
-        Quality::Medium => top_down::build(items, lanes, &Binned),
-        Quality::High => return best(items, things, lanes),
+        Quality::Medium => top_down::build(items(count, things), lanes, &Binned),
+        Quality::High => return best(items(count, things), things, lanes),
     };
     collapse(tree, &Costs::new(lanes))
 }

@@ -1,6 +1,7 @@
 //! Bounding-volume hierarchies over boxes.
 
 mod binned;
+mod bins;
 mod build;
 mod collapse;
 mod compact;

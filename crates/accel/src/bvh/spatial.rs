@@ -8,7 +8,7 @@ use glam::Vec4;
 use rayon::prelude::*;
 
 use super::binned::{self, Binned};
-use super::top_down::{Builder, PARALLEL};
+use super::top_down::{Builder, Cut, PARALLEL};
 use super::tree::{BinaryNode, BinaryTree, Extent, FREE_LEVELS, Item};
 use crate::big::Big;
 use crate::things::Things;
@@ -100,7 +100,8 @@ impl<T: Things> Splitter<'_, T> {
         let count = items.len();
         if budget == 0 || count <= self.leaf_size || depth >= FREE_LEVELS {
             let builder = Builder { leaf_size: self.leaf_size, cut: &Binned };
-            let extent = builder.split(&mut items, part.order.len(), depth, &mut part.nodes);
+            let hint = Binned.hint(&items);
+            let extent = builder.split(&mut items, part.order.len(), depth, &hint, &mut part.nodes);
             part.order.extend(items.iter().map(Item::index));
             return extent;
         }
@@ -138,7 +139,7 @@ impl<T: Things> Splitter<'_, T> {
     /// Shares items out to two sides, neither of them empty.
     fn halves(&self, mut items: Vec<Item>, budget: usize) -> [Vec<Item>; 2] {
         let ordinary = binned::best(&items);
-        let (overlap, cost) = ordinary.as_ref().map_or((f32::INFINITY, f32::INFINITY), |cut| {
+        let (overlap, cost) = ordinary.as_ref().map_or((f32::INFINITY, f32::INFINITY), |(cut, _)| {
             let [left, right] = &cut.extents;
             (left.intersection(right).half_area(), cut.cost)
         });
@@ -148,7 +149,14 @@ impl<T: Things> Splitter<'_, T> {
         {
             return halves;
         }
-        let middle = ordinary.map_or(0, |cut| cut.apply(&mut items));
+        let middle = ordinary.map_or(0, |(cut, slices)| {
+            crate::simd::run(super::bins::Partition {
+                slices: &slices,
+                items: &mut items,
+                axis: cut.axis,
+                bin: cut.bin,
+            })
+        });
         let middle = if middle == 0 || middle == items.len() { items.len() / 2 } else { middle };
         let right = items.split_off(middle);
         [items, right]

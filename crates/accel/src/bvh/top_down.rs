@@ -1,9 +1,10 @@
 //! Trees from the root down: cut the items in two, and each half again.
 
 use aureole_math::Bounds3;
+use bytemuck::Pod;
 use rayon::prelude::*;
 
-use super::tree::{BinaryNode, BinaryTree, Extent, FREE_LEVELS, Item};
+use super::tree::{BinaryNode, BinaryTree, Extent, FREE_LEVELS};
 use crate::big::Big;
 
 /// Items from which two threads pay.
@@ -11,20 +12,36 @@ pub(super) const PARALLEL: usize = 1 << 14;
 
 /// A way to cut.
 pub(super) trait Cut: Sync {
+    /// What stands for a thing.
+    type Item: Pod + Send + Sync;
+
+    /// What a cut knows of the items on each side beforehand.
+    type Hint: Copy + Send + Sync;
+
+    /// The number of the thing.
+    fn index(item: &Self::Item) -> u32;
+
+    /// The box around it.
+    fn bounds(&self, item: &Self::Item) -> Extent;
+
+    /// What is known of all items.
+    fn hint(&self, items: &[Self::Item]) -> Self::Hint;
+
     /// Moves the items of one side to the front; their number, or none where there is nothing to choose.
-    fn cut(&self, items: &mut [Item]) -> usize;
+    fn cut(&self, items: &mut [Self::Item], hint: &Self::Hint) -> (usize, [Self::Hint; 2]);
 }
 
 /// Builds a tree whose leaves have at most `leaf_size` items.
-pub(super) fn build(mut items: Big<Item>, leaf_size: usize, cut: &impl Cut) -> BinaryTree {
+pub(super) fn build<C: Cut>(mut items: Big<C::Item>, leaf_size: usize, cut: &C) -> BinaryTree {
     if items.is_empty() {
         return BinaryTree::default();
     }
-    let top = Builder { leaf_size, cut }.split_parallel(&mut items, 0, 0);
+    let hint = cut.hint(&items);
+    let top = Builder { leaf_size, cut }.split_parallel(&mut items, 0, 0, &hint);
     let mut nodes = Big::zeroed(top.size());
     top.place(&mut nodes, 0);
     let mut order = Big::zeroed(items.len());
-    order.par_iter_mut().zip(&items[..]).for_each(|(number, item)| *number = item.index());
+    order.par_iter_mut().zip(&items[..]).for_each(|(number, item)| *number = C::index(item));
     BinaryTree { nodes, order, ..BinaryTree::default() }
 }
 
@@ -81,17 +98,17 @@ pub(super) struct Builder<'a, C> {
 
 impl<C: Cut> Builder<'_, C> {
     /// The tree over items that begin at `first` in the order.
-    fn split_parallel(&self, items: &mut [Item], first: usize, depth: usize) -> Top {
+    fn split_parallel(&self, items: &mut [C::Item], first: usize, depth: usize, hint: &C::Hint) -> Top {
         if items.len() <= PARALLEL {
             let mut nodes = Vec::with_capacity(items.len());
-            self.split(items, first, depth, &mut nodes);
+            self.split(items, first, depth, hint, &mut nodes);
             return Top::Nodes(nodes);
         }
-        let middle = self.middle(items, depth);
+        let (middle, hints) = self.middle(items, depth, hint);
         let (left, right) = items.split_at_mut(middle);
         let (left, right) = rayon::join(
-            || self.split_parallel(left, first, depth + 1),
-            || self.split_parallel(right, first + middle, depth + 1),
+            || self.split_parallel(left, first, depth + 1, &hints[0]),
+            || self.split_parallel(right, first + middle, depth + 1, &hints[1]),
         );
         let (size, bounds) = (1 + left.size() + right.size(), left.bounds().union(right.bounds()));
         Top::Halves { bounds, size, halves: Box::new([left, right]) }
@@ -100,30 +117,32 @@ impl<C: Cut> Builder<'_, C> {
     /// Appends the tree over items; the box around them.
     pub(super) fn split(
         &self,
-        items: &mut [Item],
+        items: &mut [C::Item],
         first: usize,
         depth: usize,
+        hint: &C::Hint,
         nodes: &mut Vec<BinaryNode>,
     ) -> Extent {
         if items.len() <= self.leaf_size {
-            let extent = items.iter().fold(Extent::EMPTY, |extent, item| extent.union(&item.bounds()));
+            let extent =
+                items.iter().fold(Extent::EMPTY, |extent, item| extent.union(&self.cut.bounds(item)));
             nodes.push(BinaryNode::leaf(extent.bounds(), first, items.len()));
             return extent;
         }
-        let middle = self.middle(items, depth);
+        let (middle, hints) = self.middle(items, depth, hint);
         let (left, right) = items.split_at_mut(middle);
         let node = nodes.len();
         nodes.push(BinaryNode::leaf(Bounds3::EMPTY, first, 0));
-        let left_extent = self.split(left, first, depth + 1, nodes);
+        let left_extent = self.split(left, first, depth + 1, &hints[0], nodes);
         let right_node = nodes.len();
-        let extent = left_extent.union(&self.split(right, first + middle, depth + 1, nodes));
+        let extent = left_extent.union(&self.split(right, first + middle, depth + 1, &hints[1], nodes));
         nodes[node] = BinaryNode::inner(extent.bounds(), node + 1, right_node);
         extent
     }
 
     /// Where the right half begins. Where there is nothing to choose, or the tree is too deep, the list is halved.
-    fn middle(&self, items: &mut [Item], depth: usize) -> usize {
-        let middle = if depth < FREE_LEVELS { self.cut.cut(items) } else { 0 };
-        if middle == 0 || middle == items.len() { items.len() / 2 } else { middle }
+    fn middle(&self, items: &mut [C::Item], depth: usize, hint: &C::Hint) -> (usize, [C::Hint; 2]) {
+        let (middle, hints) = if depth < FREE_LEVELS { self.cut.cut(items, hint) } else { (0, [*hint; 2]) };
+        if middle == 0 || middle == items.len() { (items.len() / 2, [*hint; 2]) } else { (middle, hints) }
     }
 }
