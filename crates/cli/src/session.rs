@@ -167,7 +167,8 @@ fn read_and_compile(
     let start = Instant::now();
     let options = CompileOptions { camera: args.camera, limits, ..CompileOptions::default() };
     let scene = compile(&desc, &options, report)?;
-    aureole::render::integrator::check_parameters(&scene, report);
+    let integrator = films_of.and_then(|options| options.integrator.as_deref());
+    aureole::render::integrator::check(&scene, integrator, report)?;
     let fingerprint = films_of.map(|options| Fingerprint::new(&desc, &film, args.camera, options));
     desc.release_bulk();
     let build_seconds = start.elapsed().as_secs_f64();

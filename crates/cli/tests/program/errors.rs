@@ -27,6 +27,17 @@ fn a_value_of_the_wrong_type() {
 }
 
 #[test]
+fn an_impossible_number_for_the_integrator() {
+    let program = Program::new();
+    let integrator =
+        r#"<integrator type="direct"><integer name="emitter_samples" value="4294967295"/></integrator>"#;
+    program.write("many.xml", &format!("<scene version=\"3.0.0\">\n  {integrator}\n</scene>\n"));
+    for command in ["render", "info"] {
+        program.fails(&format!("{command} many.xml"), 3, &["emitter_samples", "4294967295", "many.xml:2:"]);
+    }
+}
+
+#[test]
 fn an_unclosed_tag() {
     let program = Program::new();
     program.write("open.xml", "<scene version=\"3.0.0\">\n  <shape type=\"sphere\">\n</scene>\n");

@@ -133,34 +133,46 @@ pub fn integrators() -> &'static [IntegratorManual] {
 
 /// The scene's integrator, or another one by name.
 pub(crate) fn build(scene: &Scene, name: Option<&str>) -> Result<Box<dyn Integrator>, SceneError> {
-    let Node { kind, params, span, family, .. } = &scene.integrator;
-    let kind = name.unwrap_or(kind);
-    let manual =
-        integrators().iter().find(|manual| manual.kind == kind).ok_or_else(|| SceneError::UnknownKind {
-            family: *family,
-            kind: kind.to_owned(),
-            known: integrators().iter().map(|manual| manual.kind.to_owned()).collect(),
-            at: *span,
-        })?;
-    let mut params = params.clone();
-    let layers = layers::Layer::from_params(&mut params)?;
-    let integrator = (manual.build)(&mut params)?;
-    Ok(if layers.is_empty() { integrator } else { layers::with_layers(integrator, layers) })
+    from_params(find(scene, name)?, &mut scene.integrator.params.clone())
 }
 
-/// Warns about parameters of the scene's integrator that it does not know.
-pub fn check_parameters(scene: &Scene, report: &mut Report) {
-    let node = &scene.integrator;
-    if let Some(manual) = integrators().iter().find(|manual| manual.kind == node.kind) {
-        let mut params = node.params.clone();
-        if layers::Layer::from_params(&mut params).is_ok() && (manual.build)(&mut params).is_ok() {
-            params.warn_unused(&format!("integrator `{}`", node.kind), manual.params, report);
+/// Checks the scene's integrator, or what another one by name would make of its parameters; warns about parameters that the
+/// scene's does not know.
+///
+/// # Errors
+/// An unknown integrator or a wrong parameter, once the report has no room left for it.
+pub fn check(scene: &Scene, name: Option<&str>, report: &mut Report) -> Result<(), SceneError> {
+    let mut params = scene.integrator.params.clone();
+    match find(scene, name).and_then(|manual| from_params(manual, &mut params).map(|_| manual)) {
+        Ok(manual) if manual.kind == scene.integrator.kind => {
+            params.warn_unused(&format!("integrator `{}`", manual.kind), manual.params, report);
+            Ok(())
         }
+        Ok(_) => Ok(()),
+        Err(error) => report.collect(error),
     }
+}
+
+fn find(scene: &Scene, name: Option<&str>) -> Result<&'static IntegratorManual, SceneError> {
+    let Node { kind, span, family, .. } = &scene.integrator;
+    let kind = name.unwrap_or(kind);
+    integrators().iter().find(|manual| manual.kind == kind).ok_or_else(|| SceneError::UnknownKind {
+        family: *family,
+        kind: kind.to_owned(),
+        known: integrators().iter().map(|manual| manual.kind.to_owned()).collect(),
+        at: *span,
+    })
+}
+
+fn from_params(manual: &IntegratorManual, params: &mut Params) -> Result<Box<dyn Integrator>, SceneError> {
+    let layers = layers::Layer::from_params(params)?;
+    let integrator = (manual.build)(params)?;
+    Ok(if layers.is_empty() { integrator } else { layers::with_layers(integrator, layers) })
 }
 
 /// How many segments a path may have; `max_depth` = -1 means any number.
 pub(crate) fn max_depth(params: &mut Params) -> Result<u32, SceneError> {
-    let depth = params.int_in("max_depth", -1, -1, i64::from(u32::MAX) - 1)?;
-    Ok(u32::try_from(depth).unwrap_or(u32::MAX - 1))
+    // 2³² - 1 is how some write -1.
+    let depth = params.int_in("max_depth", -1, -1, u32::MAX.into())?;
+    Ok(u32::try_from(depth).unwrap_or(u32::MAX).min(u32::MAX - 1))
 }
