@@ -118,8 +118,8 @@ impl<const B: usize> Bins<B> {
     fn add<S: Simd>(&mut self, slices: &Slices, item: &Item) {
         let numbers = S::F8::load(&item.numbers);
         let bins = slices.of::<S>(item);
-        for axis in 0..3 {
-            let bin = bins[axis] % B;
+        for (axis, bin) in bins.into_iter().enumerate() {
+            let bin = bin % B;
             let place = &mut self.boxes[axis][bin];
             *place = S::F8::load(place).min(numbers).to_array();
             self.counts[axis][bin] += 1;
