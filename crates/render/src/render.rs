@@ -308,6 +308,7 @@ impl Job<'_> {
         let layers = self.integrator.layers().len();
         for (i, &radiance) in worker.radiance.iter().enumerate() {
             let id = worker.ids[i];
+            let radiance = self.scene.film.limited(radiance);
             let value = SampleValue { radiance, layers: &worker.batch.layers()[i * layers..][..layers] };
             if !tile.add(id.x - area.x, id.y - area.y, value, &worker.footprints[i]) {
                 self.note_non_finite(id);

@@ -2,6 +2,7 @@
 
 use aureole_desc::{Limits, Node, SceneDesc, SceneError, Span};
 use aureole_elements::FilmSpec;
+use aureole_spectrum::Spectrum;
 
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,18 +44,35 @@ pub struct Film {
     pub is_grey: bool,
     /// What the image is multiplied by: how sensitive the film is.
     pub gain: f32,
+    /// Samples with a channel above this, after the gain, are scaled down to it; infinite for none.
+    pub max_component: f32,
 }
 
 impl Film {
     /// An uncropped film.
     pub fn new(width: u32, height: u32) -> Self {
         let crop = Crop { x: 0, y: 0, width, height };
-        Self { full: FilmSpec { width, height }, crop, border: [0; 2], is_grey: false, gain: 1.0 }
+        Self {
+            full: FilmSpec { width, height },
+            crop,
+            border: [0; 2],
+            is_grey: false,
+            gain: 1.0,
+            max_component: f32::INFINITY,
+        }
     }
 
     /// The pixels that samples are drawn for: the crop, and those around it whose samples reach into it.
     pub fn area(&self) -> Crop {
         self.crop.grown(self.border, &Crop { x: 0, y: 0, width: self.full.width, height: self.full.height })
+    }
+
+    /// A sample as the film takes it: no brighter than its limit.
+    #[inline]
+    pub fn limited(&self, radiance: Spectrum) -> Spectrum {
+        let [r, g, b] = radiance.rgb();
+        let brightest = r.max(g).max(b) * self.gain;
+        if brightest > self.max_component { radiance * (self.max_component / brightest) } else { radiance }
     }
 
     /// The film of a description, without compiling it.
@@ -85,6 +103,9 @@ impl Film {
         }
         film.is_grey = params.one_of("pixel_format", &[("rgb", false), ("luminance", true)])?;
         film.gain = params.float_in("gain", 1.0, 0.0, 1e6)?;
+        if params.has("max_component") {
+            film.max_component = params.float_in("max_component", 0.0, 0.0, f32::INFINITY)?;
+        }
         film.check(limits, node.span)?;
         Ok(film)
     }

@@ -20,6 +20,7 @@ pub const FILM: Manual = Manual {
         param("crop_height", "int", "the rest", "rows that are rendered"),
         param("pixel_format", "string", "rgb", "`rgb` or `luminance`"),
         param("gain", "float", "1", "what the image is multiplied by"),
+        param("max_component", "float", "", "samples with a brighter channel are scaled down to it"),
         param("filename", "string", "", "where programs write the image unless told otherwise"),
     ],
 };

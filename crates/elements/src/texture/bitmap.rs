@@ -8,12 +8,12 @@
 //! | `wrap` | string | repeat | beyond the unit square: `repeat`, `mirror`, `clamp`, `black` |
 //! | `encoding` | string | auto | `auto` (by file type), `srgb`, `linear` (raw data), `gamma` |
 //! | `gamma` | float | 2.2 | for `encoding` = `gamma` |
-//! | `channel` | string | color | what numbers are taken from: `color` or `alpha` |
+//! | `channel` | string | color | what is read: `color`, `alpha`, or `number`: alpha where the picture has holes, else the channels' mean |
 //! | `mapping` | string | uv | from the surface (`uv`) or from where it is: `spherical`, `cylindrical`, `planar` |
 //! | `texture_from_world` | transform | identity | into the texture's space, for the latter |
 //! | `to_uv` | transform | identity | applied to the mapped coordinates |
 //! | `scale` | float | 1 | factor |
-//! | `invert` | bool | false | 1 - value, before `scale` |
+//! | `invert` | bool | false | 1 - value, after `scale`, where that is positive |
 //!
 //! v = 0 is the bottom of the picture.
 //!
@@ -47,6 +47,16 @@ enum Filter {
 enum Channel {
     Color,
     Alpha,
+    Mean,
+}
+
+impl Channel {
+    /// What makes a number of a picture, as pbrt reads it: its holes, or all its colours alike.
+    fn number(bitmap: &Bitmap) -> Self {
+        let mut places = (0..bitmap.height()).flat_map(|y| (0..bitmap.width()).map(move |x| (x, y)));
+        let has_holes = bitmap.has_alpha() && places.any(|(x, y)| bitmap.alpha(x, y) != 1.0);
+        if has_holes { Self::Alpha } else { Self::Mean }
+    }
 }
 
 /// A picture as a texture.
@@ -74,6 +84,10 @@ impl BitmapTexture {
             (Some(x), Some(y)) => match self.channel {
                 Channel::Color => b.rgb(x, y),
                 Channel::Alpha => [b.alpha(x, y); 3],
+                Channel::Mean => {
+                    let [r, g, b] = b.rgb(x, y);
+                    [(r + g + b) * (1.0 / 3.0); 3]
+                }
             },
             _ => [0.0; 3],
         }
@@ -95,7 +109,7 @@ impl BitmapTexture {
             Filter::Bilinear => self.bilinear(&self.bitmap, p),
             Filter::Trilinear | Filter::Ewa => self.filtered(at, p),
         };
-        value.map(|x| (if self.invert { 1.0 - x } else { x }) * self.scale)
+        value.map(|x| if self.invert { (1.0 - x * self.scale).max(0.0) } else { x * self.scale })
     }
 }
 
@@ -228,12 +242,17 @@ impl Element for BitmapTexture {
             doc: "`auto`, `srgb`, `linear` or `gamma`",
         },
         ParamDoc { name: "gamma", ty: "float", default: "2.2", doc: "for `encoding` = `gamma`" },
-        ParamDoc { name: "channel", ty: "string", default: "color", doc: "`color` or `alpha`" },
+        ParamDoc {
+            name: "channel",
+            ty: "string",
+            default: "color",
+            doc: "`color`, `alpha`, or `number`: alpha where the picture has holes, else the channels' mean",
+        },
         MAPPING,
         TEXTURE_FROM_WORLD,
         TO_UV,
         ParamDoc { name: "scale", ty: "float", default: "1", doc: "factor" },
-        ParamDoc { name: "invert", ty: "bool", default: "false", doc: "1 - value, before `scale`" },
+        ParamDoc { name: "invert", ty: "bool", default: "false", doc: "1 - value, after `scale`" },
     ];
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -254,8 +273,14 @@ impl Element for BitmapTexture {
                 ("gamma", Encoding::Gamma(gamma)),
             ],
         )?;
+        let bitmap = resolver.bitmap(&path, encoding, at)?;
+        let channel = params.one_of(
+            "channel",
+            &[("color", Some(Channel::Color)), ("alpha", Some(Channel::Alpha)), ("number", None)],
+        )?;
         Ok(Self {
-            bitmap: resolver.bitmap(&path, encoding, at)?,
+            channel: channel.unwrap_or_else(|| Channel::number(&bitmap)),
+            bitmap,
             filter: params.one_of(
                 "filter",
                 &[
@@ -275,7 +300,6 @@ impl Element for BitmapTexture {
                     ("black", Wrap::Black),
                 ],
             )?,
-            channel: params.one_of("channel", &[("color", Channel::Color), ("alpha", Channel::Alpha)])?,
             mapping: Mapping::from_params(params)?,
             scale: params.float("scale", 1.0)?,
             invert: params.bool("invert", false)?,
@@ -324,7 +348,7 @@ impl TextureOps for BitmapTexture {
             }
         }
         let mean = sum / n;
-        (if self.invert { Spectrum::ONE - mean } else { mean }) * self.scale
+        if self.invert { Spectrum::ONE - mean * self.scale } else { mean * self.scale }
     }
 
     fn resolution(&self) -> Option<[u32; 2]> {
@@ -412,6 +436,31 @@ mod tests {
         assert!(value(&ewa, uv, along) < 0.01);
         assert!(value(&trilinear, uv, along) > 0.02);
         assert!(value(&ewa, uv, across) > 0.05);
+    }
+
+    /// A number of a coloured picture is the mean of its channels, or its opacity where it is not opaque everywhere.
+    #[test]
+    fn numbers_are_means_or_holes() {
+        let number = |bytes: Vec<u8>, channels: usize, invert: bool| {
+            let bitmap = Bitmap::from_bytes(1, 1, channels, bytes, Encoding::Linear)
+                .expect("is as long as it must be");
+            let channel = Channel::number(&bitmap);
+            let texture = BitmapTexture {
+                bitmap: Arc::new(bitmap),
+                channel,
+                scale: 0.5,
+                invert,
+                ..checker(Filter::Bilinear)
+            };
+            value(&texture, Point2::new(0.5, 0.5), None)
+        };
+        let near = |a: f32, b: f32| (a - b).abs() < 1e-6;
+        assert!(near(number(vec![255, 0, 51], 3, false), 0.2));
+        assert!(near(number(vec![255, 0, 51, 255], 4, false), 0.2));
+        assert!(near(number(vec![255, 0, 51, 102], 4, false), 0.2));
+        assert!(near(number(vec![0, 0, 0, 204], 4, false), 0.4));
+        // The scale comes first.
+        assert!(near(number(vec![255, 0, 51], 3, true), 0.8));
     }
 
     #[test]

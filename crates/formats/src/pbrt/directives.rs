@@ -5,6 +5,7 @@ use std::rc::Rc;
 use aureole_desc::{Family, Params, SceneDesc, SceneError, SourceId, Span, Value, suggest};
 use aureole_math::{Point3, Transform, Vector3};
 
+use super::color::{self, ColorSpace};
 use super::lexer::{Lexer, Spanned, Token};
 use super::params::{self, ParamSet, number};
 use super::state::{OpenObject, PendingCamera, Reader, Saved, unknown};
@@ -113,10 +114,12 @@ impl Reader<'_, '_> {
             }
             "CoordSysTransform" => {
                 let (name, at) = text(lexer, at)?;
+                // It sets both transforms, whichever are active.
                 match self.coordinate_systems.get(&name) {
-                    Some(transforms) => self.replace(*transforms),
+                    Some(transforms) => self.state.ctm = *transforms,
                     None => {
-                        return Err(unknown("coordinate system", &name, self.coordinate_systems.keys(), at));
+                        let error = unknown("coordinate system", &name, self.coordinate_systems.keys(), at);
+                        self.warn(error.to_string(), at);
                     }
                 }
             }
@@ -125,10 +128,14 @@ impl Reader<'_, '_> {
                 numbers::<2>(lexer, at)?; // motion is warned about where it matters
             }
             "ReverseOrientation" => self.state.reverse_orientation = !self.state.reverse_orientation,
-            "AttributeBegin" => self.save(Saved::Attributes(Box::new(self.state.clone())), at)?,
-            "TransformBegin" => self.save(Saved::Transforms(self.state.ctm, self.state.active), at)?,
+            // An old name, which saves everything as well.
+            "AttributeBegin" | "TransformBegin" => {
+                self.save(Saved::Attributes(Box::new(self.state.clone())), at)?;
+            }
             "AttributeEnd" | "TransformEnd" | "ObjectEnd" => self.restore(word, at)?,
-            "Include" | "Import" => self.include(lexer, at)?,
+            "Include" => self.include(lexer, at)?,
+            "Import" => self.import(lexer, at)?,
+            "Option" => self.option(lexer, at)?,
             "WorldBegin" => self.world_begin(),
             "WorldEnd" => {}
             _ => self.with_parameters(word, at, lexer)?,
@@ -138,13 +145,6 @@ impl Reader<'_, '_> {
 
     /// Directives of a name and parameters.
     fn with_parameters(&mut self, word: &str, at: Span, lexer: &mut Lexer<'_>) -> Result<(), SceneError> {
-        if word == "Option" {
-            let options = params::parse(lexer, self.limits(), at)?;
-            for option in options.into_list() {
-                self.warn(format!("option `{}` has no effect here", option.name), option.span);
-            }
-            return Ok(());
-        }
         if !is_known(word) {
             let near = suggest(word, DIRECTIVES.iter().copied());
             let help = near.map_or_else(String::new, |near| format!(", did you mean `{near}`?"));
@@ -165,9 +165,12 @@ impl Reader<'_, '_> {
                 Ok(())
             }
             "ColorSpace" => {
-                if name != "srgb" {
-                    self.warn(format!("colour space `{name}` is read as sRGB"), at);
-                }
+                self.state.color_space = ColorSpace::named(&name).ok_or_else(|| SceneError::UnknownName {
+                    what: "colour space",
+                    name,
+                    known: color::NAMES.map(str::to_owned).to_vec(),
+                    at,
+                })?;
                 Ok(())
             }
             "Texture" => {
@@ -177,7 +180,12 @@ impl Reader<'_, '_> {
                 self.texture_directive(name, &value_type, &class, &params)
             }
             "Attribute" => {
-                let params = params::parse(lexer, self.limits(), at)?;
+                let params = params::parse(lexer, self.limits(), at, self.state.color_space)?;
+                let targets = ["light", "material", "medium", "shape", "texture"];
+                if !targets.contains(&name.as_str()) {
+                    let known = targets.map(str::to_owned).to_vec();
+                    return Err(SceneError::UnknownName { what: "target of `Attribute`", name, known, at });
+                }
                 let limits = *self.limits();
                 let defaults = Rc::make_mut(&mut self.state.defaults).entry(name).or_default();
                 defaults.extend(params.into_list());
@@ -193,6 +201,7 @@ impl Reader<'_, '_> {
             "Shape" => "shape",
             "LightSource" | "AreaLightSource" => "light",
             "Material" | "MakeNamedMaterial" => "material",
+            "MakeNamedMedium" => "medium",
             _ => "",
         };
         let params = self.parameters(lexer, at, target)?;
@@ -228,7 +237,7 @@ impl Reader<'_, '_> {
 
     /// The parameters that follow, with the defaults for their target.
     fn parameters(&self, lexer: &mut Lexer<'_>, at: Span, target: &str) -> Result<ParamSet, SceneError> {
-        let mut params = params::parse(lexer, self.limits(), at)?;
+        let mut params = params::parse(lexer, self.limits(), at, self.state.color_space)?;
         if let Some(defaults) = self.state.defaults.get(target) {
             params.extend(defaults);
         }
@@ -261,10 +270,7 @@ impl Reader<'_, '_> {
 
     fn restore(&mut self, word: &str, at: Span) -> Result<(), SceneError> {
         match (word, self.saved.pop()) {
-            ("AttributeEnd", Some((Saved::Attributes(state), _))) => self.state = *state,
-            ("TransformEnd", Some((Saved::Transforms(ctm, active), _))) => {
-                (self.state.ctm, self.state.active) = (ctm, active);
-            }
+            ("AttributeEnd" | "TransformEnd", Some((Saved::Attributes(state), _))) => self.state = *state,
             ("ObjectEnd", Some((Saved::Object(state), _))) => {
                 self.state = *state;
                 self.object_end();
@@ -298,6 +304,19 @@ impl Reader<'_, '_> {
         self.run(&text, source)?;
         self.open_files.pop();
         Ok(())
+    }
+
+    /// An included file whose changes of the state end with it, and which may not end what it did not begin.
+    fn import(&mut self, lexer: &mut Lexer<'_>, at: Span) -> Result<(), SceneError> {
+        let (state, outer) = (self.state.clone(), std::mem::take(&mut self.saved));
+        let result = self.include(lexer, at);
+        let open = std::mem::replace(&mut self.saved, outer);
+        self.state = state;
+        result?;
+        match open.first() {
+            Some((_, at)) => Err(SceneError::syntax("this block is not ended in its file", *at)),
+            None => Ok(()),
+        }
     }
 
     fn object_begin(&mut self, name: String, at: Span) -> Result<(), SceneError> {

@@ -156,7 +156,17 @@ impl Reader<'_, '_> {
         let at = given.span;
         let mut scale = given.float("scale", 1.0)?;
         let illuminance = given.try_float("illuminance")?.filter(|e| *e > 0.0);
-        let Some(path) = given.path("filename", self)? else {
+        let file = given.path("filename", self)?;
+        if file.is_some() && given.get("L").is_some() {
+            return Err(SceneError::invalid("`L` and `filename` cannot both be given", given.at("L")));
+        }
+        let Some(path) = file else {
+            if given.get("portal").is_some() {
+                self.warn(
+                    "a portal guides the light of a picture only: this light has none",
+                    given.at("portal"),
+                );
+            }
             // Even surroundings of radiance one give a surface π.
             scale *= illuminance.map_or(1.0, |e| e / PI);
             params.push("radiance", Value::Spectrum(given.light("L", scale, self)?), at);
@@ -181,7 +191,11 @@ impl Reader<'_, '_> {
         let at = given.span;
         let scale = given.float("scale", 1.0)?;
         let mut params = Params::new();
-        let radiance = match given.path("filename", self)? {
+        let file = given.path("filename", self)?;
+        if file.is_some() && given.get("L").is_some() {
+            return Err(SceneError::invalid("`L` and `filename` cannot both be given", given.at("L")));
+        }
+        let radiance = match file {
             Some(path) => {
                 let mut picture = Params::new();
                 picture.push("filename", Value::Path(path), given.at("filename"));

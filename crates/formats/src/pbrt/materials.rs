@@ -4,7 +4,7 @@ use aureole_desc::{Family, NodeId, Params, SceneError, Value};
 use aureole_spectrum::{SpectrumRole, SpectrumSource, named_spectrum};
 
 use super::params::ParamSet;
-use super::state::{Reader, unknown};
+use super::state::{Reader, TextureType, unknown};
 use crate::brdf;
 
 const KINDS: &[&str] = &[
@@ -22,6 +22,9 @@ const KINDS: &[&str] = &[
     "subsurface",
     "thindielectric",
 ];
+
+/// Parameters that are numbers; the others are colours.
+const NUMBERS: [&str; 8] = ["alpha", "beta_m", "beta_n", "eta", "eumelanin", "g", "pheomelanin", "thickness"];
 
 impl Reader<'_, '_> {
     pub(super) fn named_material(&mut self, name: &str, at: aureole_desc::Span) -> Result<(), SceneError> {
@@ -89,7 +92,8 @@ impl Reader<'_, '_> {
     fn copied(&self, given: &ParamSet, names: &[(&str, &str)]) -> Result<Params, SceneError> {
         let mut params = Params::new();
         for (theirs, ours) in names {
-            if let Some(value) = given.textured(theirs, self)? {
+            let ty = if NUMBERS.contains(theirs) { TextureType::Float } else { TextureType::Spectrum };
+            if let Some(value) = given.textured_as(theirs, ty, self)? {
                 params.push(*ours, value, given.at(theirs));
             }
         }
@@ -106,7 +110,7 @@ impl Reader<'_, '_> {
             let texture = self.add(Family::Texture, "bitmap", picture, at);
             id = self.bent("normal_map", texture, id, at);
         }
-        if let Some(Value::Node(texture)) = given.textured("displacement", self)? {
+        if let Some(Value::Node(texture)) = given.textured_float("displacement", self)? {
             id = self.bent("bump", texture, id, given.at("displacement"));
         }
         Ok(id)
@@ -125,9 +129,9 @@ impl Reader<'_, '_> {
     /// Roughness along and across the tangent as the microfacets' alpha.
     fn alphas(&mut self, given: &ParamSet, prefix: &str, default: f64) -> Result<[Value; 2], SceneError> {
         let remap = given.bool("remaproughness", true)?;
-        let both = given.textured(&format!("{prefix}roughness"), self)?;
+        let both = given.textured_float(&format!("{prefix}roughness"), self)?;
         let mut alpha = |name: &str| -> Result<Value, SceneError> {
-            let value = given.textured(&format!("{prefix}{name}"), self)?.or_else(|| both.clone());
+            let value = given.textured_float(&format!("{prefix}{name}"), self)?.or_else(|| both.clone());
             let value = value.unwrap_or(Value::Spectrum(SpectrumSource::Uniform(default as f32)));
             Ok(match value {
                 Value::Spectrum(constant) => {
@@ -166,6 +170,10 @@ impl Reader<'_, '_> {
             let theirs = format!("{prefix}{ours}");
             let value = given.textured(&theirs, self)?;
             if params.has("reflectance") {
+                if value.is_some() {
+                    let message = format!("`reflectance` and `{theirs}` cannot both be given");
+                    return Err(SceneError::invalid(message, given.at(&theirs)));
+                }
                 continue;
             }
             let default =
@@ -191,14 +199,16 @@ impl Reader<'_, '_> {
 
     /// The index of a dielectric: a number, or a glass's index near the sodium line.
     fn eta(&mut self, given: &ParamSet, name: &str) -> Result<f64, SceneError> {
-        Ok(match given.spectrum(name, self)? {
+        let eta = match given.spectrum(name, self)? {
             Some(SpectrumSource::Tabulated(table)) => {
                 self.warn("dispersion needs spectral rendering: the index at 589 nm is used", given.at(name));
                 f64::from(table.eval(589.0))
             }
             Some(constant) => f64::from(constant.to_rgb(SpectrumRole::Unbounded)[0]),
             None => 1.5,
-        })
+        };
+        // An index of zero is none at all.
+        Ok(if eta == 0.0 { 1.0 } else { eta })
     }
 
     fn index(&mut self, given: &ParamSet) -> Result<Params, SceneError> {
@@ -283,7 +293,8 @@ impl Reader<'_, '_> {
         let names =
             ["sigma_a", "reflectance", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"];
         let mut params = self.copied(given, &names.map(|name| (name, name)))?;
-        if let Some(colour) = given.textured("color", self)? {
+        let colour = given.textured("color", self)?; // an older name
+        if let Some(colour) = colour.filter(|_| !params.has("reflectance")) {
             params.push("reflectance", colour, given.at("color"));
         }
         Ok(params)
@@ -298,7 +309,7 @@ impl Reader<'_, '_> {
         let mut params = Params::new();
         params.push("a", Value::Node(self.material_by_name(&names[0], at)?), at);
         params.push("b", Value::Node(self.material_by_name(&names[1], at)?), at);
-        params.push("weight", given.textured("amount", self)?.unwrap_or(Value::Float(0.5)), at);
+        params.push("weight", given.textured_float("amount", self)?.unwrap_or(Value::Float(0.5)), at);
         Ok(("blend", params))
     }
 
@@ -307,6 +318,9 @@ impl Reader<'_, '_> {
         let at = given.span;
         let names = ["sigma_a", "sigma_s", "reflectance", "mfp"];
         let mut params = self.copied(given, &names.map(|name| (name, name)))?;
+        if params.has("sigma_a") != params.has("sigma_s") && given.get("name").is_none() {
+            return Err(SceneError::invalid("`sigma_a` and `sigma_s` are given together or not at all", at));
+        }
         if let Some(name) = given.text("name")?.filter(|name| !name.is_empty()) {
             params.push("name", Value::String(name.to_owned()), given.at("name"));
             // A name decides alone.

@@ -5,11 +5,13 @@
 //!
 //! Reference: the pbrt-v4 input file format, <https://pbrt.org/fileformat-v4>.
 
+mod color;
 mod curve;
 mod directives;
 mod lexer;
 mod lights;
 mod materials;
+mod option;
 mod options;
 mod params;
 mod shapes;

@@ -6,6 +6,10 @@ use aureole_math::{Transform, Vector3};
 use super::params::ParamSet;
 use super::state::{PendingCamera, Reader};
 
+/// Samplers of the file format; all but `independent` and `stratified` become `sobol`.
+const SAMPLERS: [&str; 7] =
+    ["halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol"];
+
 impl Reader<'_, '_> {
     pub(super) fn film_directive(&mut self, kind: &str, params: ParamSet) -> Result<(), SceneError> {
         if !matches!(kind, "rgb" | "gbuffer" | "spectral") {
@@ -36,28 +40,31 @@ impl Reader<'_, '_> {
         if gain != 1.0 {
             params.push("gain", Value::Float(gain), film.at("iso"));
         }
-        if let Some(sensor) = film.text("sensor")?.filter(|sensor| *sensor != "cie1931") {
+        if let Some(most) = film.try_float("maxcomponentvalue")? {
+            params.push("max_component", Value::Float(most), film.at("maxcomponentvalue"));
+        }
+        let sensor = film.text("sensor")?.unwrap_or("cie1931").to_owned();
+        if sensor != "cie1931" {
             self.warn(format!("sensor `{sensor}` is taken as `cie1931`"), film.at("sensor"));
         }
-        for name in [
-            "diagonal",
-            "savefp16",
-            "maxcomponentvalue",
-            "coordinatesystem",
-            "whitebalance",
-            "nbuckets",
-            "lambdamin",
-            "lambdamax",
-        ] {
-            film.get(name); // nothing to do with the picture here
+        if film.float("whitebalance", 0.0)? != 0.0 {
+            self.warn("the film's colours are not balanced: white is that of D65", film.at("whitebalance"));
+        }
+        // Nothing to do with the picture here: a film's size is for the lenses of `realistic`; what files hold is the
+        // program's business.
+        for name in ["diagonal", "savefp16", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"] {
+            film.get(name);
         }
         film.finish("Film", self.context.report);
         self.desc.film = Some(self.add(Family::Film, "film", params, film.span));
         self.defaults()?;
-        match self.camera.take() {
-            Some(camera) => self.camera_node(&camera, size),
-            None => Ok(()),
-        }
+        // Without any, the camera is at the origin and looks along +Z.
+        let camera = self.camera.take().unwrap_or_else(|| PendingCamera {
+            kind: "perspective".into(),
+            params: ParamSet::empty(film.span),
+            world_from_camera: Transform::IDENTITY,
+        });
+        self.camera_node(&camera, size)
     }
 
     /// What pbrt takes where a file says nothing: a Gaussian, 16 samples, paths of five bounces.
@@ -90,18 +97,27 @@ impl Reader<'_, '_> {
     }
 
     fn crop(&mut self, film: &ParamSet, size: [i64; 2], params: &mut Params) -> Result<(), SceneError> {
-        let bounds = if let Some(list) = film.ints("pixelbounds")? {
-            <[i32; 4]>::try_from(list).ok().map(|b| b.map(i64::from))
-        } else if let Some(list) = film.floats("cropwindow")? {
+        let (pixels, window) = (film.ints("pixelbounds")?, film.floats("cropwindow")?);
+        if pixels.is_some() && window.is_some() {
+            self.warn("`cropwindow` counts, `pixelbounds` does not", film.at("pixelbounds"));
+        }
+        let [width, height] = size;
+        let bounds = if let Some(list) = window {
             let edge = |x: f32, n: i64| (f64::from(x.clamp(0.0, 1.0)) * n as f64).ceil() as i64;
-            <[f32; 4]>::try_from(list)
-                .ok()
-                .map(|c| [edge(c[0], size[0]), edge(c[1], size[0]), edge(c[2], size[1]), edge(c[3], size[1])])
+            <[f32; 4]>::try_from(list).ok().map(|c| {
+                let [x0, x1, y0, y1] =
+                    [edge(c[0], width), edge(c[1], width), edge(c[2], height), edge(c[3], height)];
+                [x0.min(x1), x0.max(x1), y0.min(y1), y0.max(y1)]
+            })
+        } else if let Some(list) = pixels {
+            <[i32; 4]>::try_from(list).ok().map(|b| {
+                let [x0, x1, y0, y1] = b.map(i64::from);
+                [x0.clamp(0, width), x1.clamp(0, width), y0.clamp(0, height), y1.clamp(0, height)]
+            })
         } else {
             return Ok(());
         };
-        let Some([x0, x1, y0, y1]) = bounds.filter(|b| b[0] >= 0 && b[2] >= 0 && b[1] > b[0] && b[3] > b[2])
-        else {
+        let Some([x0, x1, y0, y1]) = bounds.filter(|b| b[1] > b[0] && b[3] > b[2]) else {
             return Err(SceneError::invalid(
                 "the crop must be four numbers x0 x1 y0 y1, with pixels in between",
                 film.span,
@@ -128,14 +144,27 @@ impl Reader<'_, '_> {
                     format!("camera `{other}` is not rendered yet: `perspective` stands in for it"),
                     at,
                 );
+                for name in ["lensfile", "aperturediameter", "focusdistance", "aperture"] {
+                    given.get(name);
+                }
                 "perspective"
             }
         };
         if kind == "spherical" {
             params.push("world_from_camera", Value::Transform(*world_from_camera), at);
-            let mapping = given.text("mapping")?.unwrap_or("equalarea");
-            let mapping = if mapping == "equirectangular" { "latlong" } else { "equal_area" };
+            let mapping = match given.text("mapping")?.unwrap_or("equalarea") {
+                "equalarea" => "equal_area",
+                "equirectangular" => "latlong",
+                other => {
+                    let message = format!("`mapping` is `equalarea` or `equirectangular`, not `{other}`");
+                    return Err(SceneError::invalid(message, given.at("mapping")));
+                }
+            };
             params.push("mapping", Value::String(mapping.into()), at);
+            // pbrt reads these and does not use them either.
+            for name in ["lensradius", "focaldistance", "frameaspectratio", "screenwindow"] {
+                given.get(name);
+            }
         } else {
             params.push("world_from_camera", Value::Transform(mirrored), at);
             self.projective(kind, given, size, &mut params)?;
@@ -223,10 +252,16 @@ impl Reader<'_, '_> {
         let count = if name == "stratified" {
             given.int("xsamples", 4)?.saturating_mul(given.int("ysamples", 4)?)
         } else {
-            given.int("pixelsamples", 16)?
+            given.int("pixelsamples", if name == "independent" { 4 } else { 16 })?
         };
-        for ignored in ["seed", "randomization", "jitter"] {
+        if !given.bool("jitter", true)? {
+            self.warn("samples are placed at random in their cells all the same", given.at("jitter"));
+        }
+        for ignored in ["seed", "randomization"] {
             given.get(ignored);
+        }
+        if !SAMPLERS.contains(&kind) {
+            self.warn(format!("sampler `{kind}` is not known: `zsobol` stands in for it"), given.span);
         }
         given.finish("Sampler", self.context.report);
         let mut params = Params::new();
@@ -243,6 +278,7 @@ impl Reader<'_, '_> {
             "path" | "volpath" | "simplepath" | "simplevolpath" | "randomwalk" | "ambientocclusion"
         ) {
             self.warn(format!("integrator `{kind}` is not there yet: `path` finds the same image"), at);
+            given.touch_all(); // what they have of their own
         }
         let mut params = Params::new();
         if name == "ao" {

@@ -8,8 +8,9 @@ use aureole_desc::{Limits, Report, SceneError, Span, Value, suggest};
 use aureole_spectrum::{SpectrumRole, SpectrumSource, Tabulated, blackbody, named_spectrum, spectrum_names};
 use rustc_hash::FxHashSet;
 
+use super::color::ColorSpace;
 use super::lexer::{Lexer, Token};
-use super::state::Reader;
+use super::state::{Reader, TextureType};
 use crate::spectrum_file;
 
 /// The values of a parameter.
@@ -27,6 +28,8 @@ pub(super) struct PbrtParam {
     pub name: String,
     pub values: Values,
     pub span: Span,
+    /// What numbers of an `rgb` mean.
+    space: ColorSpace,
     used: Cell<bool>,
 }
 
@@ -35,6 +38,9 @@ pub(super) struct PbrtParam {
 pub(super) struct ParamSet {
     /// The directive's own words.
     pub span: Span,
+    /// The space of colours that are not given.
+    space: ColorSpace,
+    /// The last ones first: of two with the same name the later counts.
     list: Vec<PbrtParam>,
     asked: std::cell::RefCell<Vec<String>>,
 }
@@ -61,7 +67,12 @@ const TYPES: &[&str] = &[
 ];
 
 /// Reads the parameters that follow a directive.
-pub(super) fn parse(lexer: &mut Lexer<'_>, limits: &Limits, span: Span) -> Result<ParamSet, SceneError> {
+pub(super) fn parse(
+    lexer: &mut Lexer<'_>,
+    limits: &Limits,
+    span: Span,
+    space: ColorSpace,
+) -> Result<ParamSet, SceneError> {
     let mut list = Vec::new();
     while let Some(word) = lexer.peek()? {
         let Token::Text(declaration) = &word.token else { break };
@@ -81,10 +92,12 @@ pub(super) fn parse(lexer: &mut Lexer<'_>, limits: &Limits, span: Span) -> Resul
             });
         }
         let values = values(lexer, at)?;
-        list.push(PbrtParam { ty: ty.into(), name: name.into(), values, span: at, used: Cell::new(false) });
+        let used = Cell::new(false);
+        list.push(PbrtParam { ty: ty.into(), name: name.into(), values, span: at, space, used });
         limits.check_params(list.len(), at)?;
     }
-    Ok(ParamSet { span, list, asked: Default::default() })
+    list.reverse();
+    Ok(ParamSet { span, space, list, asked: Default::default() })
 }
 
 /// One value, or several between brackets.
@@ -134,14 +147,15 @@ pub(super) fn number(word: &str, at: Span) -> Result<f64, SceneError> {
 impl ParamSet {
     /// No parameters.
     pub(super) fn empty(span: Span) -> Self {
-        Self { span, list: Vec::new(), asked: Default::default() }
+        Self { span, space: ColorSpace::default(), list: Vec::new(), asked: Default::default() }
     }
 
-    /// Adds those that are not there yet.
+    /// Adds those that are not there yet, the later ones of the same name before the earlier.
     pub(super) fn extend(&mut self, others: &[PbrtParam]) {
         let mut names: FxHashSet<&str> = self.list.iter().map(|p| p.name.as_str()).collect();
         let new: Vec<PbrtParam> = others
             .iter()
+            .rev()
             .filter(|other| names.insert(&other.name))
             // Defaults for all that follow are not missed by one of them.
             .map(|other| PbrtParam { used: Cell::new(true), ..other.clone() })
@@ -149,7 +163,9 @@ impl ParamSet {
         self.list.extend(new);
     }
 
-    pub(super) fn into_list(self) -> Vec<PbrtParam> {
+    /// All parameters in the order of the file.
+    pub(super) fn into_list(mut self) -> Vec<PbrtParam> {
+        self.list.reverse();
         self.list
     }
 
@@ -251,7 +267,7 @@ impl ParamSet {
         let Some(param) = self.get(name) else { return Ok(None) };
         let spectrum = match (param.ty.as_str(), &param.values) {
             ("rgb" | "color", Values::Numbers(c)) if c.len() == 3 => {
-                SpectrumSource::Rgb([c[0] as f32, c[1] as f32, c[2] as f32])
+                SpectrumSource::Rgb(param.space.surface([c[0] as f32, c[1] as f32, c[2] as f32]))
             }
             ("xyz", Values::Numbers(c)) if c.len() == 3 => {
                 SpectrumSource::Rgb(aureole_spectrum::srgb_from_xyz([c[0] as f32, c[1] as f32, c[2] as f32]))
@@ -276,7 +292,12 @@ impl ParamSet {
         reader: &Reader<'_, '_>,
     ) -> Result<SpectrumSource, SceneError> {
         let rgb = match self.spectrum(name, reader)? {
-            Some(SpectrumSource::Rgb(rgb)) => rgb,
+            Some(SpectrumSource::Rgb(rgb)) => match self.get(name) {
+                Some(PbrtParam { values: Values::Numbers(c), space, ty, .. }) if ty != "xyz" => {
+                    space.light([c[0] as f32, c[1] as f32, c[2] as f32])
+                }
+                _ => rgb,
+            },
             Some(SpectrumSource::Tabulated(table)) => {
                 let luminance = table.to_xyz(false)[1].max(f32::MIN_POSITIVE);
                 table.to_rgb(SpectrumRole::Illuminant).map(|c| c / luminance)
@@ -286,17 +307,36 @@ impl ParamSet {
                 let even = Tabulated { lambda: vec![300.0, 900.0], values: vec![1.0, 1.0] };
                 even.to_rgb(SpectrumRole::Illuminant)
             }
-            None => [1.0; 3],
+            None => self.space.light([1.0; 3]),
         };
         Ok(SpectrumSource::Rgb(rgb.map(|c| c * scale as f32)))
     }
 
-    /// A texture or a constant as a value for a description's parameter, if given.
+    /// A texture of colours or a constant as a value for a description's parameter, if given.
     pub(super) fn textured(&self, name: &str, reader: &Reader<'_, '_>) -> Result<Option<Value>, SceneError> {
+        self.textured_as(name, TextureType::Spectrum, reader)
+    }
+
+    /// A texture of numbers or a constant, if given.
+    pub(super) fn textured_float(
+        &self,
+        name: &str,
+        reader: &Reader<'_, '_>,
+    ) -> Result<Option<Value>, SceneError> {
+        self.textured_as(name, TextureType::Float, reader)
+    }
+
+    /// A texture or a constant, if given.
+    pub(super) fn textured_as(
+        &self,
+        name: &str,
+        ty: TextureType,
+        reader: &Reader<'_, '_>,
+    ) -> Result<Option<Value>, SceneError> {
         let Some(param) = self.get(name) else { return Ok(None) };
         if param.ty == "texture" {
             let Values::Texts(names) = &param.values else { return Err(bad(param, "a texture's name")) };
-            return reader.texture(names.first().map_or("", String::as_str), param.span).map(Some);
+            return reader.texture(names.first().map_or("", String::as_str), ty, param.span).map(Some);
         }
         Ok(self.spectrum(name, reader)?.map(Value::Spectrum))
     }
@@ -304,7 +344,8 @@ impl ParamSet {
     /// Warns about what nobody asked for.
     pub(super) fn finish(&self, directive: &str, report: &mut Report) {
         let asked = self.asked.borrow();
-        for param in self.list.iter().filter(|p| !p.used.get()) {
+        let is_shadowed = |param: &PbrtParam| self.list.iter().any(|p| p.used.get() && p.name == param.name);
+        for param in self.list.iter().rev().filter(|p| !p.used.get() && !is_shadowed(p)) {
             let near = suggest(&param.name, asked.iter().map(String::as_str));
             let help = near.map(|near| format!("did you mean `{near}`?"));
             report.warn_with_help(

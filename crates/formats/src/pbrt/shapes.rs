@@ -57,12 +57,14 @@ impl Reader<'_, '_> {
     /// Material, emission and cut-out.
     fn surface(&mut self, given: &ParamSet, params: &mut Params) -> Result<(), SceneError> {
         let at = given.span;
-        if let Some(alpha) = given.textured("alpha", self)? {
+        if let Some(alpha) = given.textured_float("alpha", self)? {
             params.push("alpha", alpha, given.at("alpha"));
         }
         if let Some(area_light) = self.state.area_light.clone() {
             if self.open_object.is_some() {
                 self.warn("area lights in object definitions are ignored, as in pbrt", at);
+            } else if self.state.material.is_some_and(|material| self.desc[material].kind == "null") {
+                self.warn("surfaces of `interface` do not shine, as in pbrt", at);
             } else {
                 let emission = self.area_light(&area_light)?;
                 params.push("emission", Value::Node(emission), area_light.span);
@@ -101,8 +103,10 @@ impl Reader<'_, '_> {
             None => given.floats("st")?,
         };
         let uvs = uvs.unwrap_or_default().chunks_exact(2).map(|c| [c[0], c[1]]).collect();
-        given.get("S"); // tangents come from uv
-        given.get("faceIndices");
+        if given.get("S").is_some() {
+            self.warn("tangents are those of the texture coordinates", given.at("S"));
+        }
+        given.get("faceIndices"); // for ptex
         let mesh = Mesh { positions, indices, normals: triples("N")?, uvs, ..Mesh::default() };
         mesh.check().map_err(|message| SceneError::invalid(message, at))?;
         params.push("mesh", Value::Mesh(Arc::new(mesh)), at);
@@ -125,6 +129,7 @@ impl Reader<'_, '_> {
             ..Mesh::default()
         };
         control.check().map_err(|message| SceneError::invalid(message, at))?;
+        given.get("scheme"); // there is but one
         params.push("subdivision", Value::String("loop".into()), at);
         params.push("levels", Value::Int(given.int("levels", 3)?), given.at("levels"));
         params.push("mesh", Value::Mesh(Arc::new(control)), at);
@@ -135,8 +140,8 @@ impl Reader<'_, '_> {
         let path = given
             .path("filename", self)?
             .ok_or_else(|| missing("plymesh", "filename", "a PLY file", given.span))?;
-        let edge_length = given.float("edgelength", 1.0)?;
-        if let Some(displacement) = given.textured("displacement", self)? {
+        let edge_length = given.float("edgelength", 1.0)? * self.flags.edge_scale;
+        if let Some(displacement) = given.textured_float("displacement", self)? {
             params.push("displacement", displacement, given.at("displacement"));
             params.push("edge_length", Value::Float(edge_length), given.at("edgelength"));
         }
@@ -202,7 +207,10 @@ fn bilinear_mesh(given: &ParamSet, params: &mut Params) -> Result<&'static str, 
             params.push(ours, Value::Floats(list.into()), given.at(theirs));
         }
     }
-    given.get("faceIndices");
+    // The one is for ptex, the other for where pbrt's light samples go.
+    for name in ["faceIndices", "emissionfilename"] {
+        given.get(name);
+    }
     Ok("bilinear_mesh")
 }
 

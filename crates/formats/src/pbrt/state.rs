@@ -7,6 +7,7 @@ use aureole_desc::{Family, Limits, Node, NodeId, Params, SceneDesc, SceneError, 
 use aureole_math::Transform;
 use rustc_hash::FxHashMap;
 
+use super::color::ColorSpace;
 use super::params::{ParamSet, PbrtParam};
 use crate::Context;
 
@@ -18,17 +19,24 @@ pub(super) struct GraphicsState {
     /// Which of the two transforms directives change.
     pub active: [bool; 2],
     pub reverse_orientation: bool,
+    pub color_space: ColorSpace,
     pub material: Option<NodeId>,
     pub area_light: Option<ParamSet>,
     /// Defaults that `Attribute` sets, by what they are for. They are shared by states until one changes them.
     pub defaults: Rc<FxHashMap<String, Vec<PbrtParam>>>,
 }
 
-/// What `AttributeBegin`, `TransformBegin` and `ObjectBegin` leave to be ended.
+/// What `AttributeBegin` and `ObjectBegin` leave to be ended.
 pub(super) enum Saved {
     Attributes(Box<GraphicsState>),
-    Transforms([Transform; 2], [bool; 2]),
     Object(Box<GraphicsState>),
+}
+
+/// What textures give. Both have names of their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum TextureType {
+    Float,
+    Spectrum,
 }
 
 /// An object being defined: its name, and its shapes so far.
@@ -47,7 +55,7 @@ pub(super) struct Reader<'a, 'c> {
     pub state: GraphicsState,
     pub saved: Vec<(Saved, Span)>,
     pub coordinate_systems: FxHashMap<String, [Transform; 2]>,
-    pub textures: FxHashMap<String, NodeId>,
+    pub textures: FxHashMap<String, [Option<NodeId>; 2]>,
     pub materials: FxHashMap<String, NodeId>,
     pub objects: FxHashMap<String, NodeId>,
     pub open_object: Option<OpenObject>,
@@ -56,7 +64,23 @@ pub(super) struct Reader<'a, 'c> {
     pub in_world: bool,
     /// Options given before the film's size is known are built at the end.
     pub film: Option<ParamSet>,
+    pub flags: Flags,
     pub camera: Option<PendingCamera>,
+}
+
+/// What `Option` sets and the picture depends on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flags {
+    /// Factor on the edge length of displaced meshes.
+    pub edge_scale: f64,
+    /// Pictures are read at their full size only.
+    pub no_texture_filter: bool,
+}
+
+impl Default for Flags {
+    fn default() -> Self {
+        Self { edge_scale: 1.0, no_texture_filter: false }
+    }
 }
 
 /// A camera waits for the film, which decides its screen.
@@ -76,6 +100,7 @@ impl<'a, 'c> Reader<'a, 'c> {
                 ctm: [Transform::IDENTITY; 2],
                 active: [true; 2],
                 reverse_orientation: false,
+                color_space: ColorSpace::default(),
                 material: None,
                 area_light: None,
                 defaults: Rc::default(),
@@ -89,6 +114,7 @@ impl<'a, 'c> Reader<'a, 'c> {
             open_files: Vec::new(),
             in_world: false,
             film: None,
+            flags: Flags::default(),
             camera: None,
         }
     }
@@ -106,12 +132,10 @@ impl<'a, 'c> Reader<'a, 'c> {
         self.desc.add(Node::new(family, kind, params, at))
     }
 
-    /// A texture by name.
-    pub(super) fn texture(&self, name: &str, at: Span) -> Result<Value, SceneError> {
-        match self.textures.get(name) {
-            Some(id) => Ok(Value::Node(*id)),
-            None => Err(unknown("texture", name, self.textures.keys(), at)),
-        }
+    /// A texture by name; where there is none of the wanted type, one of the other.
+    pub(super) fn texture(&self, name: &str, ty: TextureType, at: Span) -> Result<Value, SceneError> {
+        let found = self.textures.get(name).and_then(|of| of[ty as usize].or(of[1 - ty as usize]));
+        found.map(Value::Node).ok_or_else(|| unknown("texture", name, self.textures.keys(), at))
     }
 
     /// The transform at the start of the shutter: motion is not rendered yet.

@@ -5,7 +5,7 @@ use aureole_math::{Transform, Vector3};
 use aureole_spectrum::SpectrumSource;
 
 use super::params::ParamSet;
-use super::state::Reader;
+use super::state::{Reader, TextureType};
 
 impl Reader<'_, '_> {
     pub(super) fn texture_directive(
@@ -20,40 +20,47 @@ impl Reader<'_, '_> {
             let message = format!("a texture is `float` or `spectrum`, not `{value_type}`");
             return Err(SceneError::syntax(message, at));
         }
+        let ty = if value_type == "float" { TextureType::Float } else { TextureType::Spectrum };
         let (kind, params) = match class {
-            "constant" => ("constant", self.slots(given, &[("value", "value", 1.0)])?),
-            "scale" => ("scale", self.slots(given, &[("tex", "texture", 1.0), ("scale", "scale", 1.0)])?),
+            "constant" => ("constant", self.slots(given, ty, &[("value", "value", 1.0)])?),
+            "scale" => ("scale", self.slots(given, ty, &[("tex", "texture", 1.0), ("scale", "scale", 1.0)])?),
             "mix" => (
                 "mix",
-                self.slots(given, &[("tex1", "a", 0.0), ("tex2", "b", 1.0), ("amount", "amount", 0.5)])?,
+                self.slots(given, ty, &[("tex1", "a", 0.0), ("tex2", "b", 1.0), ("amount", "amount", 0.5)])?,
             ),
             "bilerp" => {
                 let corners =
                     [("v00", "v00", 0.0), ("v01", "v01", 1.0), ("v10", "v10", 0.0), ("v11", "v11", 1.0)];
-                let mut params = self.slots(given, &corners)?;
+                let mut params = self.slots(given, ty, &corners)?;
                 self.mapping(given, Transform::IDENTITY, &mut params)?;
                 ("bilerp", params)
             }
             "checkerboard" => {
-                let mut params = self.slots(given, &[("tex1", "color0", 1.0), ("tex2", "color1", 0.0)])?;
+                let mut params =
+                    self.slots(given, ty, &[("tex1", "color0", 1.0), ("tex2", "color1", 0.0)])?;
                 // pbrt's squares are one unit wide, Aureole's half a unit.
                 let half = Transform::scale(Vector3::new(0.5, 0.5, 0.5));
-                if given.int("dimension", 2)? == 3 {
-                    params.push("dimension", Value::Int(3), at);
-                    self.place(half, at, &mut params)?;
-                } else {
-                    self.mapping(given, half, &mut params)?;
+                match given.int("dimension", 2)? {
+                    2 => self.mapping(given, half, &mut params)?,
+                    3 => {
+                        params.push("dimension", Value::Int(3), at);
+                        self.place(half, at, &mut params)?;
+                    }
+                    _ => {
+                        let message = "a checkerboard has two or three dimensions";
+                        return Err(SceneError::invalid(message, given.at("dimension")));
+                    }
                 }
                 ("checkerboard", params)
             }
-            "imagemap" => ("bitmap", self.image(given)?),
+            "imagemap" => ("bitmap", self.image(given, ty)?),
             "dots" => {
                 let mut params =
-                    self.slots(given, &[("inside", "inside", 1.0), ("outside", "outside", 0.0)])?;
+                    self.slots(given, ty, &[("inside", "inside", 1.0), ("outside", "outside", 0.0)])?;
                 self.mapping(given, Transform::IDENTITY, &mut params)?;
                 ("dots", params)
             }
-            "directionmix" => ("direction_mix", self.direction_mix(given)?),
+            "directionmix" => ("direction_mix", self.direction_mix(given, ty)?),
             "fbm" | "wrinkled" | "windy" | "marble" => self.noise(class, given)?,
             "ptex" => {
                 self.warn(format!("texture `{class}` is not rendered yet: grey stands in for it"), at);
@@ -88,15 +95,21 @@ impl Reader<'_, '_> {
         given.finish(&format!("texture `{class}`"), self.context.report);
         let id = self.add(Family::Texture, kind, params, at);
         self.desc[id].name = Some(name.clone());
-        self.textures.insert(name, id);
+        self.textures.entry(name).or_default()[ty as usize] = Some(id);
         Ok(())
     }
 
     /// Parameters that are textures or constants, with pbrt's defaults.
-    fn slots(&self, given: &ParamSet, slots: &[(&str, &str, f32)]) -> Result<Params, SceneError> {
+    fn slots(
+        &self,
+        given: &ParamSet,
+        ty: TextureType,
+        slots: &[(&str, &str, f32)],
+    ) -> Result<Params, SceneError> {
         let mut params = Params::new();
         for (theirs, ours, default) in slots {
-            let value = given.textured(theirs, self)?;
+            let is_number = matches!(*theirs, "amount" | "scale");
+            let value = given.textured_as(theirs, if is_number { TextureType::Float } else { ty }, self)?;
             let value = value.unwrap_or(Value::Spectrum(SpectrumSource::Uniform(*default)));
             params.push(*ours, value, given.at(theirs));
         }
@@ -121,8 +134,8 @@ impl Reader<'_, '_> {
         Ok(("fractal", params))
     }
 
-    fn direction_mix(&mut self, given: &ParamSet) -> Result<Params, SceneError> {
-        let mut params = self.slots(given, &[("tex1", "a", 0.0), ("tex2", "b", 1.0)])?;
+    fn direction_mix(&mut self, given: &ParamSet, ty: TextureType) -> Result<Params, SceneError> {
+        let mut params = self.slots(given, ty, &[("tex1", "a", 0.0), ("tex2", "b", 1.0)])?;
         let direction = given.point3("dir", [0.0, 1.0, 0.0])?.map(|x| x as f32);
         let world = self.ctm(given.span)?.vector(Vector3::from(direction));
         params.push("direction", Value::Vec3([world.x, world.y, world.z].map(f64::from)), given.at("dir"));
@@ -187,7 +200,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn image(&mut self, given: &ParamSet) -> Result<Params, SceneError> {
+    fn image(&mut self, given: &ParamSet, ty: TextureType) -> Result<Params, SceneError> {
         let at = given.span;
         let path = given.path("filename", self)?.ok_or_else(|| SceneError::MissingParam {
             element: "imagemap".into(),
@@ -206,7 +219,14 @@ impl Reader<'_, '_> {
                 return Err(SceneError::invalid(message, given.at("filter")));
             }
         };
+        let filter = match filter {
+            "trilinear" | "ewa" if self.flags.no_texture_filter => "bilinear",
+            filter => filter,
+        };
         params.push("filter", Value::String(filter.into()), at);
+        if ty == TextureType::Float {
+            params.push("channel", Value::String("number".into()), at);
+        }
         let anisotropy = given.float("maxanisotropy", 8.0)?.clamp(1.0, 64.0);
         params.push("max_anisotropy", Value::Float(anisotropy), given.at("maxanisotropy"));
         let wrap = match given.text("wrap")?.unwrap_or("repeat") {

@@ -1,5 +1,7 @@
 //! Directives, parameters and mistakes.
 
+mod semantics;
+
 use aureole_desc::{Report, SceneDesc, SceneError, Sources, Value};
 use aureole_math::{Point3, Transform, Vector3};
 
@@ -28,6 +30,13 @@ fn mistake(text: &str) -> (String, (usize, usize)) {
     let error = read.result.expect_err(text);
     let place = read.sources.locate(error.span()).and_then(|location| location.line_column);
     (error.to_string(), place.unwrap_or_else(|| panic!("no place for {error}")))
+}
+
+/// All warnings of a text that is read.
+fn warnings(text: &str) -> Vec<String> {
+    let read = read(text);
+    assert!(read.result.is_ok(), "{text}: {:?}", read.result);
+    read.report.warnings.into_iter().map(|warning| warning.message).collect()
 }
 
 fn transform_of(text: &str) -> Transform {
@@ -270,7 +279,7 @@ fn includes_that_include_themselves_are_named() {
     assert!(sources.locate(error.span()).unwrap().path.ends_with("b.pbrt"));
 }
 
-const EVERYTHING: &str = include_str!("../../tests/data/everything.pbrt");
+const EVERYTHING: &str = include_str!("../../../tests/data/everything.pbrt");
 
 #[test]
 fn a_scene_of_everything_is_read() {
