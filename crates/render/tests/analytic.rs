@@ -134,6 +134,38 @@ fn a_disk_light_over_a_floor() {
     }
 }
 
+/// Half cut out it is half as bright by either strategy; wholly cut out it is not seen but shines.
+#[test]
+fn a_cut_out_light_over_a_floor() {
+    for (alpha, samples, share) in
+        [(0.5, ["1", "1"], 0.5), (0.5, ["2", "0"], 0.5), (0.5, ["0", "2"], 0.5), (0.0, ["1", "1"], 1.0)]
+    {
+        let mut b = Builder::new();
+        let grey = b.diffuse(0.5);
+        b.shape("rectangle", Params::new().with("bsdf", grey));
+        let emission = b.node(Family::Light, "area", Params::new().with("radiance", Value::Float(4.0)));
+        let down = Transform::translate(Vector3::new(0.0, 0.0, 2.0)) * Transform::rotate(Vector3::X, 180.0);
+        let disk = Params::new()
+            .with("world_from_object", Value::Transform(down))
+            .with("alpha", Value::Float(alpha))
+            .with("emission", emission);
+        b.shape("disk", disk);
+        b.camera([0.5, 0.0, 0.7], [0.0, 0.0, 0.0], Vector3::Z);
+        let settings = [("integrator.emitter_samples", samples[0]), ("integrator.bsdf_samples", samples[1])];
+        b.expect("direct", &settings, share * 0.5 * 4.0 / (1.0 + 4.0));
+    }
+}
+
+#[test]
+fn films_limit_their_samples() {
+    for (gain, most, expected) in [("2", "0.5", 0.5), ("0.5", "1.5", 1.0)] {
+        let mut b = Builder::new();
+        b.light("constant", Params::new().with("radiance", Value::Float(2.0)));
+        b.camera([0.0; 3], [0.0, 0.0, 1.0], Vector3::Y);
+        b.expect("path", &[("film.gain", gain), ("film.max_component", most)], expected);
+    }
+}
+
 /// Inside a closed shining shell every direction sees E / (1 - albedo).
 #[test]
 fn inside_a_shining_shell() {

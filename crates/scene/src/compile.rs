@@ -5,7 +5,7 @@ use std::sync::Arc;
 use aureole_accel::{AccelError, Config, Geometry, World};
 use aureole_desc::{Family, Limits, Node, NodeId, Params, Report, SceneDesc, SceneError, Span, Value};
 use aureole_elements::light::Area;
-use aureole_elements::{Camera, Filter, Light, Material, Resolver, Sampler, Shape, shape};
+use aureole_elements::{Camera, Filter, Light, Material, Resolver, Sampler, Shape, Texture, shape};
 use aureole_math::{Arena, Bounds3, Id, Point3, Transform, Vector3};
 use aureole_spectrum::{SpectrumRole, SpectrumSource, Wavelengths};
 use rustc_hash::FxHashMap;
@@ -231,7 +231,12 @@ impl Compiler<'_> {
             (None, Some(bsdf)) => self.glow(id, material, bsdf, node),
             (None, None) => None,
         };
-        let light = match made {
+        let alpha = if params.has("alpha") {
+            Some(aureole_elements::float_texture(&mut params, &mut self.resolve, "alpha", 1.0)?)
+        } else {
+            None
+        };
+        let light = match made.map(|(light, origin)| (self.cut_out(light, alpha), origin)) {
             // Each instance of the group makes a light of its own from it.
             Some((light, origin)) if level > 0 => {
                 self.shining[level].push((self.levels[level].len() as u32, light, origin));
@@ -242,11 +247,6 @@ impl Compiler<'_> {
                 Some(self.lights.push(light))
             }
             None => None,
-        };
-        let alpha = if params.has("alpha") {
-            Some(aureole_elements::float_texture(&mut params, &mut self.resolve, "alpha", 1.0)?)
-        } else {
-            None
         };
         for name in ["interior", "exterior"] {
             if params.has(name) {
@@ -260,6 +260,16 @@ impl Compiler<'_> {
             None => self.resolve.report.warn("an infinite plane inside a group is ignored", desc[node].span),
         }
         Ok(geometry)
+    }
+
+    /// A shape's light where its `alpha` leaves something of it.
+    fn cut_out(&self, mut light: Light, alpha: Option<Id<Texture>>) -> Light {
+        if let Some(alpha) = alpha {
+            let textures = &self.resolve.textures;
+            let is_constant = matches!(textures[alpha], Texture::Constant(_));
+            light.cut_out(alpha, is_constant && textures[alpha].mean(textures).is_black());
+        }
+        light
     }
 
     /// The light of a shape whose material shines, and the node that it comes from.

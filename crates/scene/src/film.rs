@@ -67,7 +67,7 @@ impl Film {
         self.crop.grown(self.border, &Crop { x: 0, y: 0, width: self.full.width, height: self.full.height })
     }
 
-    /// A sample as the film takes it: no brighter than its limit.
+    /// A sample as the film takes it: no brighter than its limit, which counts after the gain.
     #[inline]
     pub fn limited(&self, radiance: Spectrum) -> Spectrum {
         let [r, g, b] = radiance.rgb();

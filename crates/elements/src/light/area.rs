@@ -4,11 +4,15 @@
 //! |---|---|---|---|
 //! | `radiance` | texture | 1 | emitted radiance, over the shape's uv |
 //! | `two_sided` | bool | false | shine on the inner side as well |
-//! | `power` | float | 0 | if positive: scale to this power of the whole shape, W |
+//! | `power` | float | 0 | if positive: scale to this power, W |
+//! | `power_of` | string | shape | what has that power: the whole `shape`, or each `primitive`, as in pbrt |
 //!
 //! It is given to a shape as `emission`. A shape in a group shines in each instance of it. Shapes of a material that shines
 //! by itself (`open_pbr` with `emission_luminance`) are such lights too; what their textures are asked for is known but for
 //! the attributes of meshes.
+//!
+//! Where a shape's `alpha` cuts it out it does not shine; but with a constant `alpha` of zero it is not seen and shines all
+//! the same, as in pbrt.
 
 use std::f32::consts::PI;
 use std::sync::{Arc, OnceLock};
@@ -29,10 +33,23 @@ pub struct Area {
     source: Source,
     /// The power to scale to, if positive.
     power: f32,
+    /// Whether each triangle (patch, piece ...) of the shape has it.
+    power_of_each: bool,
     /// The factor that does it, once its shape and texture can be asked.
     scale: OnceLock<f32>,
     /// Where the shape is, if it is in a group that an instance places.
     place: Option<Arc<Place>>,
+    cut: Cut,
+}
+
+/// What is left of a shape that shines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cut {
+    Whole,
+    /// By chance as often as this says.
+    Holes(Id<Texture>),
+    /// No ray meets it, but it shines.
+    Unseen,
 }
 
 /// What says how much it shines.
@@ -107,6 +124,12 @@ impl Element for Area {
         },
         ParamDoc { name: "two_sided", ty: "bool", default: "false", doc: "shine on the inner side as well" },
         ParamDoc { name: "power", ty: "float", default: "0", doc: "if positive: scale to this power, W" },
+        ParamDoc {
+            name: "power_of",
+            ty: "string",
+            default: "shape",
+            doc: "what has that power: the whole `shape`, or each `primitive`",
+        },
     ];
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -118,8 +141,10 @@ impl Element for Area {
             shape,
             source: Source::Texture { radiance, two_sided: params.bool("two_sided", false)? },
             power: params.float("power", 0.0)?,
+            power_of_each: params.one_of("power_of", &[("shape", false), ("primitive", true)])?,
             scale: OnceLock::new(),
             place: None,
+            cut: Cut::Whole,
         })
     }
 }
@@ -128,7 +153,8 @@ impl Area {
     /// The light of a shape whose material shines.
     pub fn of_material(shape: Id<Shape>, material: Id<Material>) -> Self {
         let source = Source::Material(material);
-        Self { shape, source, power: 0.0, scale: OnceLock::new(), place: None }
+        let (scale, place, cut) = (OnceLock::new(), None, Cut::Whole);
+        Self { shape, source, power: 0.0, power_of_each: false, scale, place, cut }
     }
 
     /// Radiance from a point with normal `ng`, towards a direction at a cosine to it.
@@ -150,6 +176,19 @@ impl Area {
 }
 
 impl Area {
+    /// Cuts out the shape where `alpha` is less than one; `is_zero`: it is zero everywhere.
+    pub(super) fn cut_out(&mut self, alpha: Id<Texture>, is_zero: bool) {
+        self.cut = if is_zero { Cut::Unseen } else { Cut::Holes(alpha) };
+    }
+
+    /// The chance that a drawn point is there.
+    #[inline]
+    fn share(&self, at: &LightContext<'_>, drawn: &ShapeSample) -> f32 {
+        let Cut::Holes(alpha) = self.cut else { return 1.0 };
+        let place = TextureContext::at_uv(at.textures, at.wavelengths, drawn.uv);
+        TextureContext { p: drawn.p, ..place }.float(alpha).clamp(0.0, 1.0)
+    }
+
     /// The same light on a shape of a group, in an instance of it.
     pub(super) fn placed(&self, world_from_group: Transform) -> Self {
         Self { scale: OnceLock::new(), place: Some(Arc::new(Place::new(world_from_group))), ..self.clone() }
@@ -178,8 +217,14 @@ impl Area {
         sum / (SIDE * SIDE) as f32
     }
 
+    /// The power that is asked for.
+    fn wanted_power(&self, at: &LightContext<'_>) -> f32 {
+        let count = if self.power_of_each { at.shapes[self.shape].primitive_count() } else { 1 };
+        self.power * count as f32
+    }
+
     fn scale(&self, at: &LightContext<'_>) -> f32 {
-        *self.scale.get_or_init(|| self.power / self.unscaled_power(at).max(f32::MIN_POSITIVE))
+        *self.scale.get_or_init(|| self.wanted_power(at) / self.unscaled_power(at).max(f32::MIN_POSITIVE))
     }
 }
 
@@ -192,14 +237,17 @@ impl LightOps for Area {
             Some(place) => place.sample(shape, reference, u)?,
         };
         let wi = (drawn.p - reference).try_normalized()?;
-        let radiance = self.radiance(at, drawn.p, drawn.ng, drawn.uv, -drawn.ng.dot(wi));
+        let mut radiance = self.radiance(at, drawn.p, drawn.ng, drawn.uv, -drawn.ng.dot(wi));
+        if self.cut != Cut::Whole {
+            radiance *= self.share(at, &drawn);
+        }
         let target = offset_ray_origin(drawn.p, drawn.error, drawn.ng, -wi);
         (!radiance.is_black()).then_some(LightSample {
             wi,
             target: Some(target),
             radiance,
             pdf_omega: drawn.pdf,
-            is_delta: false,
+            is_delta: self.cut == Cut::Unseen,
         })
     }
 
@@ -224,6 +272,6 @@ impl LightOps for Area {
     }
 
     fn power(&self, at: &LightContext<'_>, _: &Bounds3) -> f32 {
-        if self.power > 0.0 { self.power } else { self.unscaled_power(at) }
+        if self.power > 0.0 { self.wanted_power(at) } else { self.unscaled_power(at) }
     }
 }

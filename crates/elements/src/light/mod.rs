@@ -13,7 +13,7 @@ mod sunsky;
 
 use std::fmt::Debug;
 
-use aureole_math::{Arena, Bounds3, Point2, Point3, Transform, Vector3};
+use aureole_math::{Arena, Bounds3, Id, Point2, Point3, Transform, Vector3};
 use aureole_spectrum::{Spectrum, Wavelengths};
 
 use crate::{Material, Shape, SurfacePoint, Texture};
@@ -145,6 +145,13 @@ impl Light {
         match self {
             Self::Area(area) => area.placed(*world_from_group).into(),
             other => other.clone(),
+        }
+    }
+
+    /// Tells an area light of the `alpha` of its shape, and whether that is zero everywhere.
+    pub fn cut_out(&mut self, alpha: Id<Texture>, is_zero: bool) {
+        if let Self::Area(area) = self {
+            area.cut_out(alpha, is_zero);
         }
     }
 

@@ -181,15 +181,14 @@ fn examples(world: &mut World) -> Vec<Example> {
         })
         .collect();
     let bright = params([("radiance", glow.clone()), ("power", Float(5.0))]);
+    let pieces = bright.clone().with("power_of", Value::String("primitive".into()));
     let shape = examples.last().and_then(|example| example.shape);
-    let light = world.light("area", bright, shape);
-    examples.push(Example {
-        label: "shining tube of known power",
-        light,
-        shape,
-        is_two_sided: false,
-        place: None,
-    });
+    for (label, given) in
+        [("shining tube of known power", bright), ("shining tube whose pieces have a known power", pieces)]
+    {
+        let light = world.light("area", given, shape);
+        examples.push(Example { label, light, shape, is_two_sided: false, place: None });
+    }
     examples.extend(placed);
     examples
 }

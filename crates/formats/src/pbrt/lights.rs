@@ -210,6 +210,9 @@ impl Reader<'_, '_> {
             }
         };
         params.push("radiance", radiance, at);
+        if given.get("power").is_some() {
+            params.push("power_of", Value::String("primitive".into()), given.at("power"));
+        }
         params.push("two_sided", Value::Bool(given.bool("twosided", false)?), at);
         given.finish("AreaLightSource", self.context.report);
         Ok(self.add(Family::Light, "area", params, at))

@@ -244,8 +244,9 @@ fn disk(given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneErro
 
 fn cylinder(given: &ParamSet, params: &mut Params) -> Result<&'static str, SceneError> {
     copy(given, params, &[("radius", "radius"), ("phimax", "phi_max")])?;
-    params.push("p0", Value::Vec3([0.0, 0.0, given.float("zmin", -1.0)?]), given.span);
-    params.push("p1", Value::Vec3([0.0, 0.0, given.float("zmax", 1.0)?]), given.span);
+    let (a, b) = (given.float("zmin", -1.0)?, given.float("zmax", 1.0)?);
+    params.push("p0", Value::Vec3([0.0, 0.0, a.min(b)]), given.span);
+    params.push("p1", Value::Vec3([0.0, 0.0, a.max(b)]), given.span);
     Ok("cylinder")
 }
 
