@@ -101,9 +101,13 @@ pub(crate) fn check(
             }
         }
         Index::Grid(grid) => {
-            for &group in grid.objects() {
-                let leaves = leaves.get_mut(group as usize);
-                *leaves.ok_or(Defect::Group { group: group as usize, leaves: 1 })? = 1;
+            let mut foreign = None;
+            grid.for_each_object(&mut |group| match leaves.get_mut(group as usize) {
+                Some(leaves) => *leaves = 1,
+                None => foreign = Some(group as usize),
+            });
+            if let Some(group) = foreign {
+                return Err(Defect::Group { group, leaves: 1 });
             }
             for group in 0..groups {
                 seen.group(group, None, members)?;

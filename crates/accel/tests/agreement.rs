@@ -288,8 +288,10 @@ fn qualities_and_overlap_tests_change_no_hit() {
     let expected = build(Config::default());
     let mut configs =
         [Quality::Fast, Quality::High].map(|quality| Config { quality, ..Config::default() }).to_vec();
-    for (density, exact) in [(0.1, true), (1.0, false), (30.0, true)] {
-        let grid = GridConfig { density, exact };
+    for (density, exact, crowded) in
+        [(0.1, true, 2), (0.1, false, 32), (1.0, false, usize::MAX), (30.0, true, 2)]
+    {
+        let grid = GridConfig { density, exact, crowded };
         configs.push(Config { structure: Structure::Grid, grid, ..Config::default() });
     }
     for config in configs {

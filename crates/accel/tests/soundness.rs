@@ -291,11 +291,27 @@ fn levels_are_told_apart() {
 fn grids_of_any_density_are_sound() {
     let vertices = soup(2000, 0.3, 2);
     for (density, exact) in [(0.01, true), (1.0, false), (40.0, true), (1000.0, false)] {
-        let grid = GridConfig { density, exact };
+        let grid = GridConfig { density, exact, ..GridConfig::default() };
         let world =
             build(&[mesh(&vertices)], &Config { structure: Structure::Grid, grid, ..Config::default() });
         assert_eq!(world.validate().map(|stats| stats.primitives), Ok(2000));
     }
+}
+
+#[test]
+fn a_teapot_in_a_stadium_has_a_grid_of_its_own() {
+    let mut vertices = soup(2000, 0.1, 2);
+    vertices.extend(soup(20, 0.1, 3).iter().map(|p| p.map(|x| (x - 0.5) * 1000.0)));
+    let stats = |crowded| {
+        let grid = GridConfig { crowded, ..GridConfig::default() };
+        let world =
+            build(&[mesh(&vertices)], &Config { structure: Structure::Grid, grid, ..Config::default() });
+        world.validate().expect("a sound grid")
+    };
+    let (flat, nested) = (stats(usize::MAX), stats(32));
+    // Without it, all the triangles are in a handful of cells.
+    assert!(flat.references < 2 * 2020, "{flat:?}");
+    assert!(nested.leaves > flat.leaves + 1000, "{nested:?}");
 }
 
 /// Random rays through everything against the list: small here, ten million in `examples/random_rays.rs`.
