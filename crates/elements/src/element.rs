@@ -8,7 +8,7 @@ use aureole_image::{Bitmap, Encoding};
 use aureole_math::{Arena, Id};
 use aureole_spectrum::{SpectrumRole, SpectrumSource};
 
-use crate::{Material, Shape, Texture};
+use crate::{Camera, Material, Shape, Texture};
 
 /// An element of some family: its manual, and how it is built.
 pub trait Element: Sized {
@@ -85,6 +85,15 @@ pub trait Resolver {
 
     /// The shape that an area light sits on.
     fn emitting_shape(&self) -> Option<Id<Shape>>;
+
+    /// The camera that a node describes, for a film of its own.
+    ///
+    /// # Errors
+    /// Whatever is wrong with that node.
+    fn camera(&mut self, node: NodeId, film: FilmSpec) -> Result<Camera, SceneError>;
+
+    /// The shape that a camera sits on.
+    fn measured_shape(&self) -> Option<Shape>;
 
     /// Where warnings go.
     fn report(&mut self) -> &mut Report;
@@ -175,6 +184,12 @@ pub(crate) mod tests {
             FilmSpec { width: 256, height: 256 }
         }
         fn emitting_shape(&self) -> Option<Id<Shape>> {
+            None
+        }
+        fn camera(&mut self, _: NodeId, _: FilmSpec) -> Result<Camera, SceneError> {
+            Err(SceneError::invalid("no cameras here", Span::NONE))
+        }
+        fn measured_shape(&self) -> Option<Shape> {
             None
         }
         fn report(&mut self) -> &mut Report {

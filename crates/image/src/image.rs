@@ -1,8 +1,9 @@
 //! Images as renders produce them: floats in named channels.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-use aureole_spectrum::luminance;
+use aureole_spectrum::{luminance, srgb_from_xyz};
 
 use crate::{ImageError, Metadata};
 
@@ -107,6 +108,25 @@ impl Image {
     /// The place of a channel within a pixel.
     pub fn channel(&self, name: &str) -> Option<usize> {
         self.channels.iter().position(|channel| channel == name)
+    }
+
+    /// The image with its picture in linear Rec. 709, where that is in CIE XYZ (channels `X`, `Y`, `Z` and none of `R`, `G`, `B`).
+    pub fn in_rgb(&self) -> Cow<'_, Self> {
+        let has_rgb = ["R", "G", "B"].iter().any(|name| self.channel(name).is_some());
+        let [Some(x), Some(y), Some(z)] = ["X", "Y", "Z"].map(|name| self.channel(name)) else {
+            return Cow::Borrowed(self);
+        };
+        if has_rgb {
+            return Cow::Borrowed(self);
+        }
+        let mut image = self.clone();
+        for (place, name) in [x, y, z].into_iter().zip(["R", "G", "B"]) {
+            name.clone_into(&mut image.channels[place]);
+        }
+        for pixel in image.data.chunks_exact_mut(self.channels.len()) {
+            [pixel[x], pixel[y], pixel[z]] = srgb_from_xyz([pixel[x], pixel[y], pixel[z]]);
+        }
+        Cow::Owned(image)
     }
 
     /// Where the picture's red, green and blue are: `R`, `G`, `B`, or one grey channel three times (`Y`, or else the first).

@@ -6,8 +6,8 @@
 use std::ops::{AddAssign, Range};
 
 use aureole_image::{Image, Window};
-use aureole_scene::{Crop, Film as FilmShape};
-use aureole_spectrum::{Spectrum, luminance};
+use aureole_scene::{Colors, Crop, Film as FilmShape};
+use aureole_spectrum::{Spectrum, luminance, xyz_from_srgb};
 
 use crate::exact_sum::ExactSum;
 use crate::splat::Footprint;
@@ -199,8 +199,12 @@ impl Film {
 
     /// The image as it is now: the picture, and then the layers.
     pub fn image(&self) -> Image {
-        let FilmShape { full, crop, is_grey, gain, .. } = self.shape;
-        let picture: &[&str] = if is_grey { &["Y"] } else { &["R", "G", "B"] };
+        let FilmShape { full, crop, colors, gain, .. } = self.shape;
+        let picture: &[&str] = match colors {
+            Colors::Rgb => &["R", "G", "B"],
+            Colors::Luminance => &["Y"],
+            Colors::Xyz => &["X", "Y", "Z"],
+        };
         let names = picture.iter().copied().chain(self.names.iter().map(String::as_str));
         let names: Vec<&str> = names.collect();
         let mut image = Image::new(crop.width as usize, crop.height as usize, &names);
@@ -218,6 +222,7 @@ impl Film {
             let rgb = pixel.mean().map(|c| c * gain);
             match picture {
                 [grey] => *grey = luminance(rgb),
+                picture if colors == Colors::Xyz => picture.copy_from_slice(&xyz_from_srgb(rgb)),
                 picture => picture.copy_from_slice(&rgb),
             }
             let divisor = pixel.divisor();
@@ -296,6 +301,28 @@ pub(crate) mod tests {
         add(&mut tile, 0, 0, Spectrum::splat(f32::INFINITY), 1.0);
         film.put(&tile);
         assert_eq!((film.image().rgb(1, 1), film.dropped(), film.drawn()), ([2.0; 3], 2, [0, 3]));
+    }
+
+    #[test]
+    fn pictures_are_in_the_colours_that_are_asked_for() {
+        for (colors, names, expected) in [
+            (Colors::Rgb, vec!["R", "G", "B"], vec![0.3, 0.5, 0.9]),
+            // Mitsuba's numbers for this colour.
+            (Colors::Luminance, vec!["Y"], vec![0.4863334]),
+            (Colors::Xyz, vec!["X", "Y", "Z"], vec![0.4649066, 0.4863334, 0.920601]),
+        ] {
+            let mut film = Film::new(FilmShape { colors, ..FilmShape::new(1, 1) }, 0);
+            let mut tile = film.tile(film.shape().crop);
+            add(&mut tile, 0, 0, Spectrum::from_rgb([0.3, 0.5, 0.9]), 1.0);
+            film.put(&tile);
+            let image = film.image();
+            assert_eq!(image.channels(), names);
+            for (found, expected) in image.data().iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-5, "{names:?}: {:?}", image.data());
+            }
+            let back = image.in_rgb().rgb(0, 0);
+            assert!(colors == Colors::Luminance || (back[0] - 0.3).abs() < 1e-4, "{back:?}");
+        }
     }
 
     #[test]

@@ -10,7 +10,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use aureole_image::{Attribute, ImageError, ImageLimits, Metadata, Plane, Planes};
-use aureole_scene::{Crop, Film as FilmShape};
+use aureole_scene::{Colors, Crop, Film as FilmShape};
 
 use crate::exact_sum::ExactSum;
 use crate::film::{Film, PixelSum};
@@ -63,7 +63,8 @@ impl FilmFile {
     /// # Errors
     /// [`ImageError::Encode`].
     pub fn encode(&self) -> Result<Vec<u8>, ImageError> {
-        let shape @ FilmShape { full, crop, border, is_grey, gain, max_component } = self.film.shape();
+        let shape @ FilmShape { full, crop, border, colors, has_alpha, gain, max_component } =
+            self.film.shape();
         let area = shape.area();
         let mut planes = Planes {
             width: area.width as usize,
@@ -78,7 +79,7 @@ impl FilmFile {
         fact("film", format!("{} {} {} {}", full.width, full.height, area.x, area.y));
         fact("crop", format!("{} {} {} {}", crop.x, crop.y, crop.width, crop.height));
         fact("border", format!("{} {}", border[0], border[1]));
-        fact("image", format!("{} {}", u8::from(is_grey), gain.to_bits()));
+        fact("image", format!("{} {}", kind_of_image(colors, has_alpha), gain.to_bits()));
         fact("limit", max_component.to_bits().to_string());
         fact("layers", self.film.layer_names().join("\n"));
         fact("samples", format!("{} {}", self.samples.start, self.samples.end));
@@ -136,22 +137,31 @@ impl FilmFile {
     }
 }
 
+const COLORS: [Colors; 3] = [Colors::Rgb, Colors::Luminance, Colors::Xyz];
+
+/// What the picture's channels are, as a number.
+fn kind_of_image(colors: Colors, has_alpha: bool) -> u32 {
+    colors as u32 + if has_alpha { 4 } else { 0 }
+}
+
 /// The whole image and the part of it, without trust.
 fn shape(metadata: &Metadata, full_width: u32, full_height: u32) -> Result<FilmShape, FilmError> {
     let mut shape = FilmShape::new(full_width, full_height);
     let [x, y, width, height] = numbers(metadata, "crop")?;
     let [border_x, border_y] = numbers(metadata, "border")?;
-    let [is_grey, gain] = numbers(metadata, "image")?;
+    let [kind, gain] = numbers(metadata, "image")?;
     let [max_component] = numbers(metadata, "limit")?;
     shape.crop = Crop { x, y, width, height };
     shape.border = [border_x, border_y];
-    shape.is_grey = is_grey == 1;
+    let kinds = COLORS.into_iter().flat_map(|colors| [(colors, false), (colors, true)]);
+    let known = kinds.into_iter().find(|(colors, alpha)| kind_of_image(*colors, *alpha) == kind);
+    (shape.colors, shape.has_alpha) = known.unwrap_or_default();
     shape.gain = f32::from_bits(gain);
     shape.max_component = f32::from_bits(max_component);
     let inside = |start: u32, size: u32, whole: u32| {
         size > 0 && start.checked_add(size).is_some_and(|end| end <= whole)
     };
-    let fits = inside(x, width, full_width) && inside(y, height, full_height) && is_grey < 2;
+    let fits = inside(x, width, full_width) && inside(y, height, full_height) && known.is_some();
     let fits = fits && (0.0..=1e6).contains(&shape.gain) && shape.max_component >= 0.0;
     // What the filters' reach may be at most.
     if fits && border_x.max(border_y) < 256 {
@@ -197,7 +207,8 @@ fn channels(film: &Film) -> BTreeMap<String, Plane> {
 /// Layers are channels of an image: their names differ from each other and from the picture's.
 fn check_names(names: Vec<String>) -> Result<Vec<String>, FilmError> {
     const MOST: usize = 256;
-    let mut sorted: Vec<&str> = names.iter().map(String::as_str).chain(["R", "G", "B", "Y"]).collect();
+    let mut sorted: Vec<&str> =
+        names.iter().map(String::as_str).chain(["R", "G", "B", "X", "Y", "Z"]).collect();
     sorted.sort_unstable();
     if names.len() > MOST || sorted.windows(2).any(|pair| pair[0] == pair[1]) {
         return Err(FilmError::NotAFilm("its layers make no sense".into()));

@@ -31,6 +31,8 @@ const OTHER_SHAPE: u64 = 1024;
 const FILM_COPIES: u64 = 3;
 /// Bytes of a pixel of the finished image: three floats.
 const OUTPUT_PIXEL: u64 = 3 * 4;
+/// Bytes of a pixel of a further channel.
+const LAYER_PIXEL: u64 = FILM_COPIES * size_of::<ExactSum>() as u64 + size_of::<f32>() as u64;
 
 /// Bytes that a render will need, by what needs them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -80,8 +82,11 @@ impl MemoryEstimate {
                         estimate.building += BUILD_TRIANGLE * triangles;
                     }
                     Value::String(list) if node.family == Family::Integrator && param.name == "layers" => {
-                        let layer = FILM_COPIES * size_of::<ExactSum>() as u64 + size_of::<f32>() as u64;
-                        estimate.film += pixels.saturating_mul(layer * channel_count(list));
+                        estimate.film += pixels.saturating_mul(LAYER_PIXEL * channel_count(list));
+                    }
+                    Value::String(format) if node.family == Family::Film && param.name == "pixel_format" => {
+                        let has_alpha = u64::from(format.ends_with('a') || format.ends_with("alpha"));
+                        estimate.film += pixels.saturating_mul(LAYER_PIXEL * has_alpha);
                     }
                     Value::Floats(list) => estimate.description += 4 * list.len() as u64,
                     Value::Ints(list) => estimate.description += 4 * list.len() as u64,

@@ -54,7 +54,7 @@ pub fn compile(desc: &SceneDesc, options: &CompileOptions, report: &mut Report) 
     let bounds = world.bounds();
     let camera = compiler.camera(bounds)?;
     let filter = compiler.root(desc.filter, Family::Filter, "box", Filter::build)?;
-    let film = Film { border: border(&filter), ..film };
+    let film = Film { border: border(&filter), gain: film.gain * camera.gain(), ..film };
     let sampler = compiler.root(desc.sampler, Family::Sampler, "sobol", Sampler::build)?;
     let integrator =
         desc.integrator.map_or_else(|| default_node(Family::Integrator, "path"), |id| desc[id].clone());
@@ -207,15 +207,15 @@ impl Compiler<'_> {
             None => self.default_material()?,
         };
         let own_light = params.try_node("emission")?;
-        // A material that shines makes the shape a light, which it has to know.
         let glow = bsdf.filter(|_| self.resolve.materials[material].shines(&self.resolve.materials));
-        let built = match glow.filter(|_| own_light.is_none()) {
-            Some(bsdf) => {
-                let mut shining = desc[node].clone();
-                shining.params.push("emission", Value::Node(bsdf), desc[node].span);
-                self.build_shape(&shining)?
-            }
-            None => self.build_shape(&desc[node])?,
+        // Shapes that points are drawn from, for light of their material or to measure, have to know.
+        let is_drawn_from = glow.is_some() || self.measured() == Some(node);
+        let built = if is_drawn_from && own_light.is_none() {
+            let mut shining = desc[node].clone();
+            shining.params.push("emission", Value::Node(node), desc[node].span);
+            self.build_shape(&shining)?
+        } else {
+            self.build_shape(&desc[node])?
         };
         let geometry = match built.geometry() {
             shape::Geometry::Triangles { positions, indices } => {
@@ -327,21 +327,26 @@ impl Compiler<'_> {
         Ok(())
     }
 
+    /// The shape that the chosen camera sits on.
+    fn measured(&self) -> Option<NodeId> {
+        let camera = &self.resolve.desc[*self.resolve.desc.cameras.get(self.options.camera)?];
+        if camera.kind != "irradiance_meter" {
+            return None;
+        }
+        camera.params.clone().try_node("shape").ok().flatten()
+    }
+
     /// The chosen camera, or one that looks at everything.
     fn camera(&mut self, bounds: Bounds3) -> Result<Camera, SceneError> {
         let desc = self.resolve.desc;
         if let Some(&node) = desc.cameras.get(self.options.camera) {
-            self.resolve.expect(node, Family::Camera)?;
-            if desc[node].kind != "distant" {
-                return Camera::build(&desc[node], &mut self.resolve);
+            self.resolve.bounds = bounds;
+            if let Some(shape) = self.measured() {
+                let place = self.origins.shapes.iter().position(|&origin| origin == shape);
+                self.resolve.measured_shape = place.map(|i| self.shapes[Id::new(i as u32)].clone());
             }
-            let mut node = desc[node].clone();
-            if !bounds.is_empty() {
-                let center = bounds.centroid().to_array().map(f64::from);
-                node.params.push("scene_center", Value::Vec3(center), node.span);
-                node.params.push("scene_radius", Value::Float(f64::from(bounds.radius())), node.span);
-            }
-            return Camera::build(&node, &mut self.resolve);
+            let film = self.resolve.film;
+            return self.resolve.camera(node, film);
         }
         if self.options.camera > 0 {
             let message =

@@ -31,6 +31,18 @@ impl Crop {
     }
 }
 
+/// What the picture's channels are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colors {
+    /// Red, green, blue: linear Rec. 709.
+    #[default]
+    Rgb,
+    /// Luminance alone.
+    Luminance,
+    /// CIE X, Y, Z.
+    Xyz,
+}
+
 /// Resolution and crop, and what a pixel is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
@@ -40,8 +52,10 @@ pub struct Film {
     pub crop: Crop,
     /// How many pixels beside its own a sample adds to, in each direction; none where samples belong to one pixel.
     pub border: [u32; 2],
-    /// Whether the image is one of luminance.
-    pub is_grey: bool,
+    /// What the picture's channels are.
+    pub colors: Colors,
+    /// Whether it has a channel that says where it is covered.
+    pub has_alpha: bool,
     /// What the image is multiplied by: how sensitive the film is.
     pub gain: f32,
     /// Samples with a channel above this, after the gain, are scaled down to it; infinite for none.
@@ -56,7 +70,8 @@ impl Film {
             full: FilmSpec { width, height },
             crop,
             border: [0; 2],
-            is_grey: false,
+            colors: Colors::Rgb,
+            has_alpha: false,
             gain: 1.0,
             max_component: f32::INFINITY,
         }
@@ -101,7 +116,17 @@ impl Film {
                 height: params.int_in("crop_height", rest(height, y), 1, rest(height, y))? as u32,
             };
         }
-        film.is_grey = params.one_of("pixel_format", &[("rgb", false), ("luminance", true)])?;
+        (film.colors, film.has_alpha) = params.one_of(
+            "pixel_format",
+            &[
+                ("rgb", (Colors::Rgb, false)),
+                ("rgba", (Colors::Rgb, true)),
+                ("luminance", (Colors::Luminance, false)),
+                ("luminance_alpha", (Colors::Luminance, true)),
+                ("xyz", (Colors::Xyz, false)),
+                ("xyza", (Colors::Xyz, true)),
+            ],
+        )?;
         film.gain = params.float_in("gain", 1.0, 0.0, 1e6)?;
         if params.has("max_component") {
             film.max_component = params.float_in("max_component", 0.0, 0.0, f32::INFINITY)?;

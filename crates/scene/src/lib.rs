@@ -26,7 +26,7 @@ mod scene;
 mod shapes;
 
 pub use compile::{CompileOptions, compile};
-pub use film::{Crop, Film};
+pub use film::{Colors, Crop, Film};
 pub use lights::{LightChoice, LightPicker};
 pub use origins::Origins;
 pub use scene::{Counts, Elements, Interaction, Scene, SceneHit};

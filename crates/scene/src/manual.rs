@@ -18,7 +18,12 @@ pub const FILM: Manual = Manual {
         param("crop_y", "int", "0", "first row that is rendered"),
         param("crop_width", "int", "the rest", "columns that are rendered"),
         param("crop_height", "int", "the rest", "rows that are rendered"),
-        param("pixel_format", "string", "rgb", "`rgb` or `luminance`"),
+        param(
+            "pixel_format",
+            "string",
+            "rgb",
+            "`rgb`, `luminance`, `xyz`; or with coverage: `rgba`, `luminance_alpha`, `xyza`",
+        ),
         param("gain", "float", "1", "what the image is multiplied by"),
         param("max_component", "float", "", "samples with a brighter channel are scaled down to it"),
         param("filename", "string", "", "where programs write the image unless told otherwise"),

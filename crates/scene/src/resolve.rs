@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use aureole_desc::{Family, Limits, NodeId, Report, SceneDesc, SceneError, Span};
-use aureole_elements::{FilmSpec, Material, Resolver, Shape, Texture, texture};
+use aureole_desc::{Family, Limits, NodeId, Report, SceneDesc, SceneError, Span, Value};
+use aureole_elements::{Camera, FilmSpec, Material, Resolver, Shape, Texture, texture};
 use aureole_image::{Bitmap, Encoding, ImageLimits, read_bitmap};
-use aureole_math::{Arena, Id};
+use aureole_math::{Arena, Bounds3, Id};
 use aureole_spectrum::{SpectrumRole, SpectrumSource};
 use rustc_hash::FxHashMap;
 
@@ -25,6 +25,10 @@ pub(crate) struct Resolve<'a> {
     pub materials: Arena<Material>,
     pub film: FilmSpec,
     pub emitting_shape: Option<Id<Shape>>,
+    /// The shape that a camera sits on.
+    pub measured_shape: Option<Shape>,
+    /// What the scene's shapes are within, once they are built.
+    pub bounds: Bounds3,
     limits: Limits,
     /// Elements that are being built: each waits for the next.
     depth: usize,
@@ -44,6 +48,8 @@ impl<'a> Resolve<'a> {
             materials: Arena::new(),
             film,
             emitting_shape: None,
+            measured_shape: None,
+            bounds: Bounds3::EMPTY,
             limits,
             depth: 0,
             cost: 0,
@@ -159,6 +165,25 @@ impl Resolver for Resolve<'_> {
         }));
         self.bitmaps.insert(key, bitmap.clone());
         Ok(bitmap)
+    }
+
+    fn camera(&mut self, node: NodeId, film: FilmSpec) -> Result<Camera, SceneError> {
+        self.expect(node, Family::Camera)?;
+        let mut described = self.desc[node].clone();
+        if described.kind == "distant" && !self.bounds.is_empty() {
+            let center = self.bounds.centroid().to_array().map(f64::from);
+            described.params.push("scene_center", Value::Vec3(center), described.span);
+            let radius = f64::from(self.bounds.radius());
+            described.params.push("scene_radius", Value::Float(radius), described.span);
+        }
+        let whole = std::mem::replace(&mut self.film, film);
+        let built = self.descend(node, |this| Camera::build(&described, this));
+        self.film = whole;
+        Ok(built?.0)
+    }
+
+    fn measured_shape(&self) -> Option<Shape> {
+        self.measured_shape.clone()
     }
 
     fn film(&self) -> FilmSpec {

@@ -9,7 +9,7 @@ use aureole_elements::texture::Footprint;
 use aureole_elements::{
     Bsdf, Camera, Filter, Light, Material, Sampler, Shape, SurfacePoint, Texture, TextureContext,
 };
-use aureole_math::{Arena, Bounds3, Id, Ray, Transform, Vector3, offset_ray_origin};
+use aureole_math::{Arena, Bounds3, Id, Ray, Transform, Vector2, Vector3, offset_ray_origin};
 use aureole_spectrum::{Spectrum, Wavelengths};
 
 use crate::film::Film;
@@ -278,6 +278,14 @@ impl Scene {
     fn footprint(&self, at: &SurfacePoint) -> Option<Footprint> {
         let steps = self.camera.footprint(at.p, at.ng).map(|step| step * self.footprint_scale);
         Footprint::new(steps, [at.dp_du, at.dp_dv])
+    }
+
+    /// How a surface's parameters change from a sample of a pixel to the next, across and down, as the camera sees it; zero
+    /// where that is not known. As many samples lie beside each other as above each other.
+    pub fn parameter_steps(&self, at: &SurfacePoint) -> [Vector2; 2] {
+        let scale = (self.sampler.sample_count().max(1) as f32).sqrt().recip();
+        let steps = self.camera.footprint(at.p, at.ng).map(|step| step * scale);
+        Footprint::new(steps, [at.dp_du, at.dp_dv]).map_or([Vector2::ZERO; 2], |footprint| footprint.duv)
     }
 
     /// What lights may ask for.

@@ -2,8 +2,10 @@
 //!
 //! Camera space looks along +Z with +Y up; the right of the image is −X (right-handed).
 
+mod batch;
 mod distant;
 mod fov;
+mod irradiance_meter;
 mod orthographic;
 mod perspective;
 mod radiance_meter;
@@ -15,8 +17,10 @@ use aureole_math::{Frame, Point2, Point3, Ray, Vector3};
 
 use crate::texture::onto_plane;
 
+pub use batch::Batch;
 pub use distant::Distant;
 pub use fov::FovAxis;
+pub use irradiance_meter::IrradianceMeter;
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
 pub use radiance_meter::RadianceMeter;
@@ -43,6 +47,11 @@ pub trait CameraOps: Debug + Send + Sync {
     fn footprint(&self, _p: Point3, _n: Vector3) -> [Vector3; 2] {
         [Vector3::ZERO; 2]
     }
+
+    /// What radiance is multiplied by to be what the camera measures.
+    fn gain(&self) -> f32 {
+        1.0
+    }
 }
 
 /// Steps of an angle of one pixel in any two directions across the line of sight.
@@ -61,6 +70,8 @@ registry! {
     spherical::Spherical as Spherical = "spherical",
     radiance_meter::RadianceMeter as RadianceMeter = "radiance_meter",
     distant::Distant as Distant = "distant",
+    irradiance_meter::IrradianceMeter as IrradianceMeter = "irradiance_meter",
+    batch::Batch as Batch = "batch",
 }
 
 impl Camera {
@@ -73,6 +84,11 @@ impl Camera {
     /// How far a place moves on its plane from a pixel to the next.
     pub fn footprint(&self, p: Point3, n: Vector3) -> [Vector3; 2] {
         each_camera!(self, c => c.footprint(p, n))
+    }
+
+    /// What radiance is multiplied by to be what the camera measures.
+    pub fn gain(&self) -> f32 {
+        each_camera!(self, c => c.gain())
     }
 }
 

@@ -85,7 +85,7 @@ impl ShapeOps for Rectangle {
     }
 
     fn sample_area(&self, u: Point2) -> Option<ShapeSample> {
-        self.mesh.sample_area(u)
+        Some(ShapeSample { pdf: 1.0 / self.mesh.area(), ..self.mesh.sample_square(u) })
     }
 
     fn sample_towards(&self, reference: Point3, u: Point2) -> Option<ShapeSample> {
@@ -97,7 +97,7 @@ impl ShapeOps for Rectangle {
                 let at = seen.sample(u);
                 Some(ShapeSample { pdf: 1.0 / seen.solid_angle(), ..self.mesh.sample_square(at) })
             }
-            None => self.mesh.sample_area(u)?.into_solid_angle(reference),
+            None => self.sample_area(u)?.into_solid_angle(reference),
         }
     }
 

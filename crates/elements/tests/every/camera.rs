@@ -31,11 +31,71 @@ fn place() -> (&'static str, Value) {
     ("world_from_camera", Value::Transform(view.expect("not along the up vector")))
 }
 
+/// Two cameras at the same place.
+fn batch(kinds: [&str; 2]) -> Camera {
+    let mut world = World::default();
+    let cameras = kinds.map(|kind| match world.add(Family::Camera, kind, [place()]) {
+        Value::Node(id) => id,
+        other => panic!("not a node: {other:?}"),
+    });
+    let node =
+        Node::new(Family::Camera, "batch", params([("cameras", Value::Nodes(cameras.into()))]), Span::NONE);
+    Camera::build(&node, &mut world).expect("two cameras")
+}
+
+/// A meter on a square in the plane z = 0.
+fn irradiance_meter() -> Camera {
+    let mut world = World::default();
+    let id = world.shape("rectangle", params([]));
+    world.measured = Some(world.shapes[id].clone());
+    let node = Node::new(Family::Camera, "irradiance_meter", params([]), Span::NONE);
+    Camera::build(&node, &mut world).expect("a shape of known area")
+}
+
+#[test]
+fn a_batch_shows_its_cameras_side_by_side() {
+    let both = batch(["perspective", "orthographic"]);
+    let lens = Point2::new(0.3, 0.8);
+    for (x, kind) in [(0.0, "perspective"), (0.5, "orthographic")] {
+        let mut world = World::half_as_wide();
+        let node = Node::new(Family::Camera, kind, params([place()]), Span::NONE);
+        let alone = Camera::build(&node, &mut world).expect("is sound");
+        let film = Point2::new(0.2 * 128.0, 0.7 * 128.0);
+        let expected = alone.generate_ray(&CameraSample { film, lens, time: 0.0 });
+        let found = ray(&both, x + 0.1, 0.7, lens);
+        assert!((found.direction - expected.direction).length() < 1e-5, "{kind}");
+        assert!((found.origin - expected.origin).length() < 1e-4, "{kind}");
+    }
+}
+
+/// Its pixels are parts of the shape, and directions are drawn by cosine.
+#[test]
+fn a_meter_looks_out_of_its_shape() {
+    let meter = irradiance_meter();
+    assert!((meter.gain() - std::f32::consts::PI).abs() < 1e-6);
+    let mut rng = Pcg32::new(4);
+    let mut sum = 0.0;
+    for _ in 0..10_000 {
+        let [x, y] = [rng.next_f32(), rng.next_f32()];
+        let r = ray(&meter, x, y, rng.point2());
+        let at = Vector3::new(2.0 * x - 1.0, 2.0 * y - 1.0, 0.0);
+        assert!((r.origin - Point3::ORIGIN - at).length() < 1e-4, "{r:?}");
+        assert!(r.direction.z > 0.0);
+        sum += r.direction.z / 10_000.0;
+    }
+    // The mean cosine of directions drawn by cosine.
+    assert!((sum - 2.0 / 3.0).abs() < 0.015, "{sum}");
+}
+
 #[test]
 fn every_kind_makes_unit_rays() {
     let mut rng = Pcg32::new(1);
     for kind in Camera::KINDS {
-        let camera = camera(kind, params([place()]));
+        let camera = match *kind {
+            "batch" => batch(["perspective", "orthographic"]),
+            "irradiance_meter" => irradiance_meter(),
+            _ => camera(kind, params([place()])),
+        };
         for _ in 0..1000 {
             let r = ray(&camera, rng.next_f32(), rng.next_f32(), rng.point2());
             assert!((r.direction.length() - 1.0).abs() < 1e-5, "{kind}: {r:?}");

@@ -4,22 +4,41 @@ use std::path::Path;
 use std::sync::Arc;
 
 use aureole_desc::{Family, Limits, Node, NodeId, Params, Report, SceneDesc, SceneError, Span, Value};
-use aureole_elements::{FilmSpec, Light, Material, Resolver, Shape, Texture};
+use aureole_elements::{Camera, FilmSpec, Light, Material, Resolver, Shape, Texture};
 use aureole_image::{Bitmap, Encoding};
 use aureole_math::{Arena, Id};
 use aureole_spectrum::{SpectrumRole, SpectrumSource};
 
 /// A description and the arenas of what was built from it.
-#[derive(Default)]
 pub(crate) struct World {
     desc: SceneDesc,
     pub(crate) textures: Arena<Texture>,
     pub(crate) materials: Arena<Material>,
     pub(crate) shapes: Arena<Shape>,
     emitting: Option<Id<Shape>>,
+    /// The shape that a camera sits on.
+    pub(crate) measured: Option<Shape>,
+    film: FilmSpec,
     report: Report,
     limits: Limits,
     built: Vec<(Family, String)>,
+}
+
+impl Default for World {
+    fn default() -> Self {
+        Self {
+            desc: SceneDesc::default(),
+            textures: Arena::new(),
+            materials: Arena::new(),
+            shapes: Arena::new(),
+            emitting: None,
+            measured: None,
+            film: FilmSpec { width: 256, height: 128 },
+            report: Report::default(),
+            limits: Limits::default(),
+            built: Vec::new(),
+        }
+    }
 }
 
 /// Parameters from a list.
@@ -38,6 +57,11 @@ pub(crate) fn word(text: &str) -> Value {
 }
 
 impl World {
+    /// A world whose film is a square.
+    pub(crate) fn half_as_wide() -> Self {
+        Self { film: FilmSpec { width: 128, height: 128 }, ..Self::default() }
+    }
+
     /// Describes an element for others to refer to.
     pub(crate) fn add<const N: usize>(
         &mut self,
@@ -108,11 +132,23 @@ impl Resolver for World {
     }
 
     fn film(&self) -> FilmSpec {
-        FilmSpec { width: 256, height: 128 }
+        self.film
     }
 
     fn emitting_shape(&self) -> Option<Id<Shape>> {
         self.emitting
+    }
+
+    fn camera(&mut self, node: NodeId, film: FilmSpec) -> Result<Camera, SceneError> {
+        let node = self.note(node);
+        let whole = std::mem::replace(&mut self.film, film);
+        let camera = Camera::build(&node, self);
+        self.film = whole;
+        camera
+    }
+
+    fn measured_shape(&self) -> Option<Shape> {
+        self.measured.clone()
     }
 
     fn report(&mut self) -> &mut Report {

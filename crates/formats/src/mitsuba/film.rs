@@ -55,9 +55,15 @@ pub(super) fn film(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<NodeI
         "burn",
         "label",
     ]);
-    // Pictures are grey or in colour; alpha and other primaries are not written.
-    if scope.string("pixel_format")?.is_some_and(|format| format.starts_with("luminance")) {
-        scope.out.push("pixel_format", Value::String("luminance".to_owned()), scope.span());
+    if let Some(format) = scope.string("pixel_format")? {
+        // Version 0.6 has lists of them, for several pictures.
+        let first = format.split([',', ' ']).next().unwrap_or_default();
+        let first = match first {
+            "luminanceAlpha" => "luminance_alpha".to_owned(),
+            "spectrum" | "spectrumAlpha" => "rgb".to_owned(),
+            other => other.to_owned(),
+        };
+        scope.out.push("pixel_format", Value::String(first), scope.span());
     }
     match scope.take_child(&[Tag::Filter]) {
         Some(child) => t.scene.filter = Some(filter(t, child.id)?),

@@ -24,7 +24,7 @@ const KINDS: &[(&str, &str)] = &[
 ];
 
 /// Quantities of `aov` that are layers in Aureole by the same name.
-const QUANTITIES: [&str; 10] = [
+const QUANTITIES: [&str; 12] = [
     "albedo",
     "depth",
     "position",
@@ -33,6 +33,8 @@ const QUANTITIES: [&str; 10] = [
     "sh_normal",
     "dp_du",
     "dp_dv",
+    "duv_dx",
+    "duv_dy",
     "prim_index",
     "shape_index",
 ];

@@ -1,6 +1,6 @@
 //! Cameras.
 
-use aureole_desc::{Family, SceneError, Value};
+use aureole_desc::{Family, NodeId, Param, Params, SceneError, Value};
 use aureole_math::{Point3, Transform, Vector3};
 
 use super::film;
@@ -8,7 +8,7 @@ use super::scope::Scope;
 use super::translate::Translator;
 use super::tree::{ObjectId, Tag};
 
-/// Mitsuba's plugins and Aureole's words for them. Not all of the latter can be rendered yet.
+/// Mitsuba's plugins and Aureole's words for them.
 const KINDS: &[(&str, &str)] = &[
     ("perspective", "perspective"),
     ("thinlens", "perspective"),
@@ -21,6 +21,31 @@ const KINDS: &[(&str, &str)] = &[
 
 /// Adds a camera. The first one's film, filter and sampler are the scene's.
 pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), SceneError> {
+    let is_first = t.scene.cameras.is_empty();
+    let camera = translate(t, id, None, is_first)?;
+    t.scene.cameras.push(camera);
+    Ok(())
+}
+
+/// Adds a camera that sits on a shape.
+pub(super) fn on_shape(
+    t: &mut Translator<'_, '_, '_>,
+    id: ObjectId,
+    shape: NodeId,
+) -> Result<(), SceneError> {
+    let is_first = t.scene.cameras.is_empty();
+    let camera = translate(t, id, Some(shape), is_first)?;
+    t.scene.cameras.push(camera);
+    Ok(())
+}
+
+/// A camera's node; the scene gets the film, filter and sampler of one that is its first.
+fn translate(
+    t: &mut Translator<'_, '_, '_>,
+    id: ObjectId,
+    shape: Option<NodeId>,
+    is_first: bool,
+) -> Result<NodeId, SceneError> {
     let tree = t.tree;
     let mut scope = Scope::new(tree, tree.get(id))?;
     let kind = t.kind(&scope, Family::Camera, KINDS)?;
@@ -41,19 +66,79 @@ pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), S
             scope.default("focus_distance", Value::Float(10_000.0));
         }
         "radiancemeter" | "distant" => directed(&mut scope)?,
+        "irradiancemeter" => {
+            let shape = shape.ok_or_else(|| {
+                SceneError::invalid("an `irradiancemeter` belongs inside of a shape", scope.span())
+            })?;
+            scope.out.push("shape", Value::Node(shape), scope.span());
+            scope.ignore(&["world_from_camera", "shutter_open", "shutter_close"]);
+        }
+        "batch" => batch(t, &mut scope)?,
         _ => scope.ignore(&["focus_distance"]),
     }
 
-    let is_first = t.scene.cameras.is_empty();
     if let Some(film) = scope.take_child(&[Tag::Film]).filter(|_| is_first) {
         t.scene.film = Some(film::film(t, film.id)?);
     }
     if let Some(sampler) = scope.take_child(&[Tag::Sampler]).filter(|_| is_first) {
         t.scene.sampler = Some(film::sampler(t, sampler.id)?);
     }
-    let camera = t.finish(scope, Family::Camera, kind)?;
-    t.scene.cameras.push(camera);
+    t.finish(scope, Family::Camera, kind)
+}
+
+/// The cameras of a batch; their own films and samplers do not count.
+fn batch(t: &mut Translator<'_, '_, '_>, scope: &mut Scope<'_>) -> Result<(), SceneError> {
+    let mut cameras = Vec::new();
+    while let Some(child) = scope.take_child(&[Tag::Sensor]) {
+        if t.tree.get(child.id).plugin == "batch" {
+            return Err(SceneError::invalid("a `batch` inside of a `batch`", child.span));
+        }
+        let camera = translate(t, child.id, None, false)?;
+        let aspect = aspect_of_own_film(t, child.id)?;
+        let params = &mut t.scene[camera].params;
+        if let Some(fov) = horizontal(params, aspect)? {
+            let span = params.span("fov");
+            params.set(Param { name: "fov".to_owned(), value: Value::Float(fov), span });
+            params.set(Param { name: "fov_axis".to_owned(), value: Value::String("x".to_owned()), span });
+        }
+        cameras.push(camera);
+    }
+    if cameras.is_empty() {
+        return Err(scope.missing("sensor", "at least one sensor inside"));
+    }
+    scope.out.push("cameras", Value::Nodes(cameras), scope.span());
+    scope.ignore(&["world_from_camera", "shutter_open", "shutter_close", "srf"]);
     Ok(())
+}
+
+/// Width over height of the film that a sensor names, by its size or Mitsuba's default.
+fn aspect_of_own_film(t: &Translator<'_, '_, '_>, sensor: ObjectId) -> Result<f64, SceneError> {
+    let mut scope = Scope::new(t.tree, t.tree.get(sensor))?;
+    let mut size = [768, 576];
+    if let Some(film) = scope.take_child(&[Tag::Film]) {
+        let mut film = Scope::new(t.tree, t.tree.get(film.id))?;
+        for (side, name) in size.iter_mut().zip(["width", "height"]) {
+            *side = film.int(name)?.unwrap_or(*side);
+        }
+    }
+    Ok(size[0].max(1) as f64 / size[1].max(1) as f64)
+}
+
+/// The horizontal field of view in degrees, where it is told by another axis. Mitsuba takes that from a sensor's own film, whatever
+/// film a batch then gives to it.
+fn horizontal(params: &Params, aspect: f64) -> Result<Option<f64>, SceneError> {
+    let mut params = params.clone();
+    let (Some(fov), Some(axis)) = (params.try_float("fov")?, params.try_string("fov_axis")?) else {
+        return Ok(None);
+    };
+    let factor = match axis.as_str() {
+        "y" => aspect,
+        "smaller" => aspect.max(1.0),
+        "larger" => aspect.min(1.0),
+        "diagonal" => aspect / aspect.hypot(1.0),
+        _ => return Ok(None),
+    };
+    Ok(Some(2.0 * ((0.5 * f64::from(fov)).to_radians().tan() * factor).atan().to_degrees()))
 }
 
 /// A meter's place and direction, in place of `to_world`.

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use super::scope::Scope;
+use super::sensor;
 use super::translate::{MeshKey, Orientation, Translator};
 use super::tree::{ObjectId, Tag};
 use crate::mesh::{curves, obj, ply, serialized, vol};
@@ -97,7 +98,12 @@ pub(super) fn translate<'a>(
         _ => {}
     }
     surface(t, &mut scope)?;
-    t.finish(scope, Family::Shape, kind)
+    let meter = scope.take_child(&[Tag::Sensor]);
+    let shape = t.finish(scope, Family::Shape, kind)?;
+    if let Some(meter) = meter {
+        sensor::on_shape(t, meter.id, shape)?;
+    }
+    Ok(shape)
 }
 
 /// What a shape is made of, whether it shines, and what it encloses.

@@ -10,6 +10,7 @@ mod pfm;
 mod pnm;
 mod probe;
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, Read};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -239,7 +240,8 @@ pub fn encode(image: &Image, format: Format, options: &WriteOptions) -> Result<V
     if image.data().is_empty() {
         return Err(ImageError::Encode { message: "it has no pixels".into() });
     }
-    encode(image, options).map_err(|message| ImageError::Encode { message })
+    let image = if format == Format::Exr { Cow::Borrowed(image) } else { image.in_rgb() };
+    encode(&image, options).map_err(|message| ImageError::Encode { message })
 }
 
 /// Writes an image in the format that the path's suffix names; the file is never half-written.

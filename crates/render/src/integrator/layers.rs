@@ -12,6 +12,8 @@
 //! | `geo_normal`, `sh_normal` | X Y Z | unit normals in the world, without and with interpolation |
 //! | `dp_du`, `dp_dv` | X Y Z | derivatives of position |
 //! | `prim_index`, `shape_index` | I | numbers of the primitive and the shape |
+//! | `duv_dx`, `duv_dy` | U V | change of surface parameters from a sample to the next, across and down |
+//! | `alpha` | A | 1 where the picture is covered |
 //! | `radiance` | R G B A | the picture again, and where it is covered |
 //! | `xyz`, `xyz2` | X Y Z | the picture in CIE XYZ, and the mean of its squares |
 //!
@@ -65,21 +67,24 @@ enum Quantity {
     ShadingNormal,
     DpDu,
     DpDv,
+    DuvDx,
+    DuvDy,
     PrimitiveIndex,
     ShapeIndex,
+    Alpha,
     Radiance,
     Xyz,
     XyzSquared,
 }
 
 use Quantity::{
-    Albedo, Depth, DpDu, DpDv, GeometricNormal, Position, PrimitiveIndex, Radiance, ShadingNormal,
-    ShapeIndex, Uv, Xyz, XyzSquared,
+    Albedo, Alpha, Depth, DpDu, DpDv, DuvDx, DuvDy, GeometricNormal, Position, PrimitiveIndex, Radiance,
+    ShadingNormal, ShapeIndex, Uv, Xyz, XyzSquared,
 };
 
 impl Quantity {
     /// Names, and the last words of the channels.
-    const ALL: [(&str, Self, &[&str]); 13] = [
+    const ALL: [(&str, Self, &[&str]); 16] = [
         ("albedo", Albedo, &["R", "G", "B"]),
         ("depth", Depth, &["T"]),
         ("position", Position, &["X", "Y", "Z"]),
@@ -88,8 +93,11 @@ impl Quantity {
         ("sh_normal", ShadingNormal, &["X", "Y", "Z"]),
         ("dp_du", DpDu, &["X", "Y", "Z"]),
         ("dp_dv", DpDv, &["X", "Y", "Z"]),
+        ("duv_dx", DuvDx, &["U", "V"]),
+        ("duv_dy", DuvDy, &["U", "V"]),
         ("prim_index", PrimitiveIndex, &["I"]),
         ("shape_index", ShapeIndex, &["I"]),
+        ("alpha", Alpha, &["A"]),
         ("radiance", Radiance, &["R", "G", "B", "A"]),
         ("xyz", Xyz, &["X", "Y", "Z"]),
         ("xyz2", XyzSquared, &["X", "Y", "Z"]),
@@ -97,7 +105,7 @@ impl Quantity {
 
     /// Whether it is about a surface, not about the picture.
     fn is_of_surface(self) -> bool {
-        !matches!(self, Xyz | XyzSquared | Radiance)
+        !matches!(self, Xyz | XyzSquared | Radiance | Alpha)
     }
 
     /// Adds its values at a surface.
@@ -122,9 +130,13 @@ impl Quantity {
             ShadingNormal => out.extend(surface.frame.n.to_array()),
             DpDu => out.extend(surface.dp_du.to_array()),
             DpDv => out.extend(surface.dp_dv.to_array()),
+            DuvDx | DuvDy => {
+                let [dx, dy] = scene.parameter_steps(surface);
+                out.extend(if self == DuvDx { dx.to_array() } else { dy.to_array() });
+            }
             PrimitiveIndex => out.push(hit.primitive as f32),
             ShapeIndex => out.push(hit.geometry as f32),
-            Radiance | Xyz | XyzSquared => {}
+            Alpha | Radiance | Xyz | XyzSquared => {}
         }
     }
 }
@@ -164,10 +176,19 @@ impl Layer {
     }
 }
 
+impl Layer {
+    /// The picture's own alpha.
+    pub(super) fn alpha() -> Self {
+        Self { quantity: Alpha, channels: vec!["A".to_owned()] }
+    }
+}
+
 /// An integrator that gathers layers as well.
 pub(super) fn with_layers(inner: Box<dyn Integrator>, layers: Vec<Layer>) -> Box<dyn Integrator> {
     let names = layers.iter().flat_map(|layer| layer.channels.iter().cloned()).collect();
-    let looks = layers.iter().any(|layer| layer.quantity.is_of_surface() || layer.quantity == Radiance);
+    let looks = layers
+        .iter()
+        .any(|layer| layer.quantity.is_of_surface() || matches!(layer.quantity, Radiance | Alpha));
     Box::new(Layered { inner, layers, names, looks })
 }
 
@@ -186,11 +207,12 @@ impl Layered {
         batch.rays += u64::from(self.looks);
         let at = hit.map(|hit| (hit, scene.interaction(&start.ray, &hit)));
         for layer in &self.layers {
+            let alpha = || f32::from(u8::from(at.is_some() || !scene.environments().is_empty()));
             match (layer.quantity, &at) {
+                (Alpha, _) => batch.layers.push(alpha()),
                 (Radiance, _) => {
-                    let is_covered = at.is_some() || !scene.environments().is_empty();
                     batch.layers.extend(radiance.rgb());
-                    batch.layers.push(f32::from(u8::from(is_covered)));
+                    batch.layers.push(alpha());
                 }
                 (Xyz, _) => batch.layers.extend(xyz_from_srgb(radiance.rgb())),
                 (XyzSquared, _) => batch.layers.extend(xyz_from_srgb(radiance.rgb()).map(|x| x * x)),

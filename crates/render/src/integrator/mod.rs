@@ -13,7 +13,7 @@ mod whitted;
 use aureole_desc::{Node, ParamDoc, Params, Report, SceneError};
 use aureole_elements::sampler::SampleKey;
 use aureole_math::Ray;
-use aureole_scene::Scene;
+use aureole_scene::{Film, Scene};
 use aureole_spectrum::Spectrum;
 
 use crate::replay::Event;
@@ -133,7 +133,7 @@ pub fn integrators() -> &'static [IntegratorManual] {
 
 /// The scene's integrator, or another one by name.
 pub(crate) fn build(scene: &Scene, name: Option<&str>) -> Result<Box<dyn Integrator>, SceneError> {
-    from_params(find(scene, name)?, &mut scene.integrator.params.clone())
+    from_params(find(scene, name)?, &mut scene.integrator.params.clone(), &scene.film)
 }
 
 /// Checks the scene's integrator, or what another one by name would make of its parameters; warns about parameters that the
@@ -143,7 +143,7 @@ pub(crate) fn build(scene: &Scene, name: Option<&str>) -> Result<Box<dyn Integra
 /// An unknown integrator or a wrong parameter, once the report has no room left for it.
 pub fn check(scene: &Scene, name: Option<&str>, report: &mut Report) -> Result<(), SceneError> {
     let mut params = scene.integrator.params.clone();
-    match find(scene, name).and_then(|manual| from_params(manual, &mut params).map(|_| manual)) {
+    match find(scene, name).and_then(|manual| from_params(manual, &mut params, &scene.film).map(|_| manual)) {
         Ok(manual) if manual.kind == scene.integrator.kind => {
             params.warn_unused(&format!("integrator `{}`", manual.kind), manual.params, report);
             Ok(())
@@ -164,8 +164,13 @@ fn find(scene: &Scene, name: Option<&str>) -> Result<&'static IntegratorManual, 
     })
 }
 
-fn from_params(manual: &IntegratorManual, params: &mut Params) -> Result<Box<dyn Integrator>, SceneError> {
-    let layers = layers::Layer::from_params(params)?;
+fn from_params(
+    manual: &IntegratorManual,
+    params: &mut Params,
+    film: &Film,
+) -> Result<Box<dyn Integrator>, SceneError> {
+    let alpha = film.has_alpha.then(layers::Layer::alpha);
+    let layers: Vec<_> = alpha.into_iter().chain(layers::Layer::from_params(params)?).collect();
     let integrator = (manual.build)(params)?;
     Ok(if layers.is_empty() { integrator } else { layers::with_layers(integrator, layers) })
 }

@@ -208,6 +208,27 @@ fn cameras_with_what_hangs_below_them() {
 }
 
 #[test]
+fn cameras_beside_each_other_and_on_shapes() {
+    let (scene, warnings) = read(
+        r#"<sensor type="batch">
+            <sensor type="perspective"><string name="fov_axis" value="y"/><float name="fov" value="90"/></sensor>
+            <sensor type="orthographic"/>
+            <film type="hdrfilm"><integer name="width" value="8"/></film>
+        </sensor>
+        <shape type="disk"><sensor type="irradiancemeter"><film type="hdrfilm"/></sensor></shape>"#,
+    );
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let shown: Vec<_> = scene.cameras.iter().map(|&id| show(&scene, id)).collect();
+    // The first one's axis is that of a film of 768 by 576.
+    let first = "perspective(fov_axis=x fov=106.26020470831195)";
+    assert_eq!(
+        shown,
+        [format!("batch(cameras=[{first}, orthographic()])"), "irradiance_meter(shape=disk())".to_owned()]
+    );
+    assert_eq!(show(&scene, scene.film.unwrap()), "film(width=8 height=576)");
+}
+
+#[test]
 fn integrators() {
     for (xml, text) in [
         (
@@ -243,10 +264,10 @@ fn integrators() {
         assert_eq!(show(&scene, scene.integrator.unwrap()), text);
     }
     let (scene, warnings) = read(
-        r#"<integrator type="aov"><string name="aovs" value="dd:depth,d:duv_dx"/><integrator type="path"/></integrator>"#,
+        r#"<integrator type="aov"><string name="aovs" value="dd:depth,d:boundary_test"/><integrator type="path"/></integrator>"#,
     );
     assert_eq!(show(&scene, scene.integrator.unwrap()), "path(layers=_arg_0:radiance,dd:depth)");
-    assert_eq!(warnings, ["the layer `d:duv_dx` is left out"]);
+    assert_eq!(warnings, ["the layer `d:boundary_test` is left out"]);
     let (_, warnings) = read(r#"<integrator type="volpath"/><medium type="homogeneous" id="m"/>"#);
     assert_eq!(warnings, ["participating media are not rendered yet: `volpath` is rendered as `path`"]);
 }

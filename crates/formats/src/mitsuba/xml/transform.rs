@@ -66,7 +66,20 @@ fn rotate(step: &Element<'_>) -> Result<Transform, SceneError> {
     if axis == [0.0; 3] {
         return Err(SceneError::invalid("a rotation needs an axis: x, y or z", step.span()));
     }
-    Ok(Transform::rotate(to_vector(axis), angle))
+    rotation(axis, angle).ok_or_else(|| SceneError::invalid("the rotation has no inverse", step.span()))
+}
+
+/// Rodrigues' formula with the axis as it is: Mitsuba 3 does not normalise it, so that one of another length than one stretches
+/// as well.
+fn rotation([x, y, z]: [f64; 3], angle: f64) -> Option<Transform> {
+    let (sin, cos) = angle.to_radians().sin_cos();
+    let t = 1.0 - cos;
+    Transform::from_rows([
+        [cos + t * x * x, t * x * y - sin * z, t * x * z + sin * y, 0.0],
+        [t * x * y + sin * z, cos + t * y * y, t * y * z - sin * x, 0.0],
+        [t * x * z - sin * y, t * y * z + sin * x, cos + t * z * z, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+    ])
 }
 
 /// Sixteen numbers by rows, or nine for the part without translation.
@@ -108,4 +121,29 @@ fn look_at(step: &Element<'_>) -> Result<Transform, SceneError> {
     };
     Transform::look_at(origin, target, up)
         .ok_or_else(|| SceneError::invalid("origin, target and up lie on one line", step.span()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Mitsuba 3.9.1's matrices for an axis of length one, and for others: rows of the linear part.
+    #[test]
+    fn axes_that_are_not_of_length_one_stretch() {
+        for (axis, rows) in [
+            ([0.0, 0.0, 1.0], [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
+            ([0.0, 0.0, 2.0], [[0.0, -2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 4.0]]),
+            ([1.0, 1.0, 0.0], [[1.0, 1.0, 1.0], [1.0, 1.0, -1.0], [-1.0, 1.0, 0.0]]),
+        ] {
+            let found =
+                rotation(axis, 90.0).map(|t| [Vector3::X, Vector3::Y, Vector3::Z].map(|v| t.vector(v)));
+            let columns = found.expect("has an inverse");
+            for (i, row) in rows.into_iter().enumerate() {
+                for (j, value) in row.into_iter().enumerate() {
+                    let x = columns[j].to_array()[i];
+                    assert!((x - value).abs() < 1e-6, "{axis:?}: {columns:?}");
+                }
+            }
+        }
+    }
 }
