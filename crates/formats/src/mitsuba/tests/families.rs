@@ -225,7 +225,7 @@ fn cameras_beside_each_other_and_on_shapes() {
         shown,
         [format!("batch(cameras=[{first}, orthographic()])"), "irradiance_meter(shape=disk())".to_owned()]
     );
-    assert_eq!(show(&scene, scene.film.unwrap()), "film(width=8 height=576)");
+    assert_eq!(show(&scene, scene.film.unwrap()), "film(height=576 width=8)");
 }
 
 #[test]
