@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::bins::{BINS, BinCut, CutParts, Fill, FillAndCut, Partition, Slices};
+use super::bins::{BINS, BinCut, CutParts, Fill, FillAndCut, Slices};
 use super::top_down::Cut;
 use super::tree::{Extent, Item};
 use crate::simd;
@@ -48,8 +48,7 @@ impl Cut for Binned {
         }
         let Some(slices) = Slices::new(&centers, items.len()) else { return (0, [centers; 2]) };
         let best = cheapest(&slices, items);
-        let middle = simd::run(Partition { slices: &slices, items, axis: best.axis, bin: best.bin });
-        (middle, best.extents.map(|extent| extent.doubled()))
+        (best.apply(&slices, items), best.extents.map(|extent| extent.doubled()))
     }
 }
 

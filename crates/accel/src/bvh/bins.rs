@@ -1,7 +1,7 @@
 //! Boxes and numbers of the items in each slice of a node, on all axes, and the cheapest cut between two slices.
 
 use super::tree::{Extent, Item, MAX_AREA};
-use crate::simd::{Floats, Kernel, Simd};
+use crate::simd::{self, Floats, Kernel, Simd};
 
 /// Bins of one axis at most.
 pub(super) const BINS: usize = 32;
@@ -48,11 +48,11 @@ impl Slices {
 }
 
 /// Moves the items whose bin is below `bin` to the front; their number.
-pub(super) struct Partition<'a> {
-    pub slices: &'a Slices,
-    pub items: &'a mut [Item],
-    pub axis: usize,
-    pub bin: usize,
+struct Partition<'a> {
+    slices: &'a Slices,
+    items: &'a mut [Item],
+    axis: usize,
+    bin: usize,
 }
 
 impl Kernel for Partition<'_> {
@@ -86,11 +86,18 @@ pub(super) struct Bins<const B: usize> {
 pub(super) struct BinCut {
     /// The sum of area times number.
     pub cost: f32,
-    pub axis: usize,
+    axis: usize,
     /// The first on the right side.
-    pub bin: usize,
+    bin: usize,
     /// What is around the items of each side.
     pub extents: [Extent; 2],
+}
+
+impl BinCut {
+    /// Moves the items of the left side to the front; their number.
+    pub(super) fn apply(&self, slices: &Slices, items: &mut [Item]) -> usize {
+        simd::run(Partition { slices, items, axis: self.axis, bin: self.bin })
+    }
 }
 
 impl<const B: usize> Bins<B> {

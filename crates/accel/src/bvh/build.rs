@@ -36,10 +36,7 @@ const REINSERTED: f32 = 0.3;
 /// Builds a hierarchy over boxes, whose leaves hold groups of up to `lanes` primitives.
 pub(crate) fn build(count: usize, things: &impl Things, lanes: usize, config: &Config) -> Built {
     let tree = match config.quality {
-        Quality::Fast => {
-            let curve = Linear(things);
-            top_down::build(curve.keys(count), lanes, &curve)
-        }
+        Quality::Fast => top_down::build(Linear(things).keys(count), lanes, &Linear(things)),
         Quality::Medium => top_down::build(items(count, things), lanes, &Binned),
         Quality::High => return best(items(count, things), things, lanes),
     };

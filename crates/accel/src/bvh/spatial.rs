@@ -149,14 +149,7 @@ impl<T: Things> Splitter<'_, T> {
         {
             return halves;
         }
-        let middle = ordinary.map_or(0, |(cut, slices)| {
-            crate::simd::run(super::bins::Partition {
-                slices: &slices,
-                items: &mut items,
-                axis: cut.axis,
-                bin: cut.bin,
-            })
-        });
+        let middle = ordinary.map_or(0, |(cut, slices)| cut.apply(&slices, &mut items));
         let middle = if middle == 0 || middle == items.len() { items.len() / 2 } else { middle };
         let right = items.split_off(middle);
         [items, right]
