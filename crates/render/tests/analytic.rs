@@ -166,6 +166,102 @@ fn films_limit_their_samples() {
     }
 }
 
+/// A black square in even surroundings, on its way from a place to another.
+fn moving_square([start, end]: [Transform; 2], shutter: [&str; 2]) -> Builder {
+    let mut b = Builder::new();
+    let black = b.diffuse(0.0);
+    let square = Node::new(Family::Shape, "rectangle", Params::new().with("bsdf", black), Span::NONE);
+    let square = b.0.add(square);
+    let group = b.node(Family::Shape, "group", Params::new().with("shapes", Value::Nodes(vec![square])));
+    let instance = Params::new()
+        .with("group", group)
+        .with("world_from_object", Value::Transform(start))
+        .with("world_from_object_end", Value::Transform(end));
+    b.shape("instance", instance);
+    b.light("constant", Params::new().with("radiance", Value::Float(1.0)));
+    b.camera([0.0, 0.0, 4.0], [0.0; 3], Vector3::Y);
+    b.0.set("camera.shutter_open", shutter[0]).unwrap();
+    b.0.set("camera.shutter_close", shutter[1]).unwrap();
+    b
+}
+
+/// A square of edge 1 that goes from -1 to 3 covers the origin for a quarter of the way, from 1/8 to 3/8.
+#[test]
+fn a_square_that_moves_covers_its_share_of_time() {
+    let at = |x: f32| {
+        Transform::translate(Vector3::new(x, 0.0, 0.0)) * Transform::scale(Vector3::new(0.5, 0.5, 1.0))
+    };
+    for (shutter, covered) in [
+        (["0", "1"], 0.25),
+        (["0", "0.5"], 0.5),
+        (["0.4", "0.5"], 0.0),
+        (["-1", "0.25"], 0.1),
+        (["2", "3"], 0.0),
+    ] {
+        for integrator in ["path", "direct", "whitted"] {
+            moving_square([at(-1.0), at(3.0)], shutter).expect(integrator, &[], 1.0 - covered);
+        }
+    }
+}
+
+/// A bar that turns by a right angle covers a place as long as it passes by: the turn is even.
+#[test]
+fn a_bar_that_turns_covers_its_share_of_time() {
+    let (half_width, distance) = (0.1_f64, 0.5_f64);
+    let away = Vector3::new(-1.0, -1.0, 0.0) * (distance as f32 * 0.5_f32.sqrt());
+    let bar = |angle: f64| {
+        Transform::translate(away)
+            * Transform::rotate(Vector3::Z, angle)
+            * Transform::scale(Vector3::new(1.0, half_width as f32, 1.0))
+    };
+    let covered = 2.0 * (half_width / distance).asin().to_degrees() / 90.0;
+    moving_square([bar(0.0), bar(90.0)], ["0", "1"]).expect("path", &[], 1.0 - covered);
+}
+
+/// A camera that passes a square sees what it sees of a square that passes it.
+#[test]
+fn a_camera_that_moves_passes_by() {
+    for kind in ["perspective", "orthographic"] {
+        let place = Transform::scale(Vector3::new(0.5, 0.5, 1.0));
+        let mut b = moving_square([place, place], ["0", "1"]);
+        let (from, to) = (Point3::new(1.0, 0.0, 4.0), Point3::new(1.0, 0.0, 0.0));
+        // Narrow also where rays are parallel.
+        let start = Transform::look_at(from, to, Vector3::Y).unwrap()
+            * Transform::scale(Vector3::new(1e-3, 1e-3, 1.0));
+        let end = Transform::translate(Vector3::new(-4.0, 0.0, 0.0)) * start;
+        let camera = b.0.cameras[0];
+        b.0[camera].kind = kind.into();
+        for (name, place) in [("world_from_camera", start), ("world_from_camera_end", end)] {
+            b.0[camera].params.push(name, Value::Transform(place), Span::NONE);
+        }
+        if kind == "orthographic" {
+            b.0[camera].params.remove("fov");
+        }
+        b.expect("path", &[], 0.75);
+    }
+}
+
+/// Shadow rays know the time: what passes before a lamp takes its share of light.
+#[test]
+fn a_shadow_that_moves_takes_its_share() {
+    let at = |x: f32| {
+        Transform::translate(Vector3::new(x, 0.0, 1.0)) * Transform::scale(Vector3::new(0.5, 0.5, 1.0))
+    };
+    for integrator in ["path", "direct", "whitted"] {
+        let mut b = moving_square([at(-1.0), at(3.0)], ["0", "1"]);
+        b.0.lights.clear();
+        b.0.cameras.clear();
+        let grey = b.diffuse(0.5);
+        b.shape("rectangle", Params::new().with("bsdf", grey));
+        let lamp =
+            Params::new().with("position", Value::Vec3([0.0, 0.0, 2.0])).with("intensity", Value::Float(3.0));
+        b.light("point", lamp);
+        b.camera([0.5, 0.0, 0.5], [0.0; 3], Vector3::Z);
+        b.0.set("camera.shutter_close", "1").unwrap();
+        b.expect(integrator, &[], 0.75 * 0.5 / std::f64::consts::PI * 3.0 / 4.0);
+    }
+}
+
 /// Inside a closed shining shell every direction sees E / (1 - albedo).
 #[test]
 fn inside_a_shining_shell() {

@@ -6,7 +6,7 @@ use aureole_accel::{AccelError, Config, Geometry, World};
 use aureole_desc::{Family, Limits, Node, NodeId, Params, Report, SceneDesc, SceneError, Span, Value};
 use aureole_elements::light::Area;
 use aureole_elements::{Camera, Filter, Light, Material, Resolver, Sampler, Shape, Texture, shape};
-use aureole_math::{Arena, Bounds3, Id, Point3, Transform, Vector3};
+use aureole_math::{Arena, Bounds3, Id, Motion, Point3, Transform, Vector3};
 use aureole_spectrum::{SpectrumRole, SpectrumSource, Wavelengths};
 use rustc_hash::FxHashMap;
 
@@ -14,7 +14,7 @@ use crate::film::Film;
 use crate::lights::LightPicker;
 use crate::origins::Origins;
 use crate::resolve::Resolve;
-use crate::scene::{Instance, Object, Scene};
+use crate::scene::{Instance, Object, Place, Scene};
 
 /// Options of a compilation.
 #[derive(Clone, Debug, Default)]
@@ -93,6 +93,18 @@ fn default_node(family: Family, kind: &str) -> Node {
     Node::new(family, kind, Params::new(), Span::NONE)
 }
 
+/// The way from one transform to another; none where they are the same.
+fn motion(start: Transform, end: Transform, at: Span) -> Result<Option<Motion>, SceneError> {
+    if start == end {
+        return Ok(None);
+    }
+    let turns_over = start.swaps_handedness() != end.swaps_handedness();
+    let motion = Motion::new(start, end).filter(|_| !turns_over);
+    motion.map(Some).ok_or_else(|| {
+        SceneError::invalid("no way without mirroring leads from one transform to the other", at)
+    })
+}
+
 /// The geometry that an accelerator complains about.
 fn geometry_of(error: &AccelError) -> Option<usize> {
     match error {
@@ -159,13 +171,30 @@ impl Compiler<'_> {
         if !world_from_object.is_invertible() {
             return Err(SceneError::invalid("the transform cannot be inverted", span));
         }
+        let motion = match params.has("world_from_object_end") {
+            true => {
+                let at = params.span("world_from_object_end");
+                motion(world_from_object, params.transform("world_from_object_end")?, at)?
+            }
+            false => None,
+        };
         let (world, inner_level) = self.group(group)?;
+        if let Some(motion) = motion {
+            if !self.shining[inner_level as usize].is_empty() {
+                self.resolve.report.warn("what moves does not shine: lights in this group are dark", span);
+            }
+            let place = Place::Moving(Box::new(motion.clone()));
+            let instance = Instance { level: inner_level, place, lights: Box::default() };
+            self.levels[0].push(Object::Instance(instance));
+            return Ok(Geometry::MovingInstance { level: world, world_from_object: motion });
+        }
         let mut lights = Vec::new();
         for (geometry, light, node) in &self.shining[inner_level as usize] {
             self.origins.lights.push(*node);
             lights.push((*geometry, self.lights.push(light.placed(&world_from_object))));
         }
-        let instance = Instance { level: inner_level, world_from_object, lights: lights.into() };
+        let place = Place::Still(world_from_object);
+        let instance = Instance { level: inner_level, place, lights: lights.into() };
         self.levels[0].push(Object::Instance(instance));
         Ok(Geometry::Instance { level: world, world_from_object })
     }

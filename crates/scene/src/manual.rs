@@ -44,5 +44,11 @@ pub const INSTANCE: Manual = Manual {
     params: &[
         param("group", "shape", "", "the group"),
         param("world_from_object", "transform", "identity", "where it is"),
+        param(
+            "world_from_object_end",
+            "transform",
+            "the same",
+            "where it is at time 1, if it moves from time 0 on",
+        ),
     ],
 };

@@ -9,7 +9,7 @@ use aureole_elements::texture::Footprint;
 use aureole_elements::{
     Bsdf, Camera, Filter, Light, Material, Sampler, Shape, SurfacePoint, Texture, TextureContext,
 };
-use aureole_math::{Arena, Bounds3, Id, Ray, Transform, Vector2, Vector3, offset_ray_origin};
+use aureole_math::{Arena, Bounds3, Id, Motion, Ray, Transform, Vector2, Vector3, offset_ray_origin};
 use aureole_spectrum::{Spectrum, Wavelengths};
 
 use crate::film::Film;
@@ -28,9 +28,16 @@ pub(crate) enum Object {
 #[derive(Clone, Debug)]
 pub(crate) struct Instance {
     pub level: u32,
-    pub world_from_object: Transform,
+    pub place: Place,
     /// Geometries of the group that shine, in ascending order, and the lights that they are here.
     pub lights: Box<[(u32, Id<Light>)]>,
+}
+
+/// Where an instance is.
+#[derive(Clone, Debug)]
+pub(crate) enum Place {
+    Still(Transform),
+    Moving(Box<Motion>),
 }
 
 impl Instance {
@@ -221,7 +228,14 @@ impl Scene {
         let Object::Instance(instance) = &self.levels[0][hit.instance as usize] else {
             unreachable!("the accelerator names instances by the geometries that are instances")
         };
-        let place = &instance.world_from_object;
+        let moved;
+        let place = match &instance.place {
+            Place::Still(place) => place,
+            Place::Moving(motion) => {
+                moved = motion.at(ray.time);
+                &moved
+            }
+        };
         let object = &self.levels[instance.level as usize][hit.geometry as usize];
         let inner = self.solid(object, &place.inverse().ray(ray), local);
         Interaction {

@@ -8,6 +8,7 @@ mod fov;
 mod irradiance_meter;
 mod orthographic;
 mod perspective;
+mod placed;
 mod radiance_meter;
 mod spherical;
 
@@ -95,17 +96,14 @@ impl Camera {
 /// Parameters that projective cameras share.
 mod projective {
     use aureole_desc::{ParamDoc, Params, SceneError};
-    use aureole_math::{Point2, Transform, Vector3};
+    use aureole_math::{Point2, Vector3};
 
+    use super::placed::{self, Placed};
     use crate::{FilmSpec, Resolver};
 
-    pub(super) const PARAMS: [ParamDoc; 8] = [
-        ParamDoc {
-            name: "world_from_camera",
-            ty: "transform",
-            default: "identity",
-            doc: "looks along +Z, +Y up",
-        },
+    pub(super) const PARAMS: [ParamDoc; 9] = [
+        placed::PARAMS[0],
+        placed::PARAMS[1],
         ParamDoc { name: "near_clip", ty: "float", default: "0.01", doc: "nothing nearer is seen" },
         ParamDoc { name: "far_clip", ty: "float", default: "10000", doc: "nothing farther is seen" },
         ParamDoc { name: "aperture_radius", ty: "float", default: "0", doc: "of the lens; 0 for a pinhole" },
@@ -115,8 +113,8 @@ mod projective {
             default: "1",
             doc: "along the axis, to the plane in focus",
         },
-        ParamDoc { name: "shutter_open", ty: "float", default: "0", doc: "start of the exposure" },
-        ParamDoc { name: "shutter_close", ty: "float", default: "0", doc: "end of the exposure" },
+        placed::PARAMS[2],
+        placed::PARAMS[3],
         ParamDoc {
             name: "screen_window",
             ty: "floats",
@@ -126,14 +124,13 @@ mod projective {
     ];
 
     /// Where the camera is, what its lens does, and which part of the plane z = 1 its film shows.
-    #[derive(Clone, Copy, Debug)]
+    #[derive(Clone, Debug)]
     pub(super) struct Projective {
-        pub world_from_camera: Transform,
+        pub place: Placed,
         pub near: f32,
         pub far: f32,
         pub aperture_radius: f32,
         pub focus_distance: f32,
-        pub shutter: [f32; 2],
         film: FilmSpec,
         /// Left, right, bottom, top; x grows to the right of the image.
         pub window: [f32; 4],
@@ -163,12 +160,11 @@ mod projective {
                 None => [-default_half_width, default_half_width, -half_height, half_height],
             };
             Ok(Self {
-                world_from_camera: params.transform("world_from_camera")?,
+                place: Placed::from_params(params)?,
                 near: params.float_in("near_clip", 0.01, 0.0, f32::INFINITY)?,
                 far: params.float_in("far_clip", default_far, 0.0, f32::INFINITY)?,
                 aperture_radius: params.float_in("aperture_radius", 0.0, 0.0, f32::INFINITY)?,
                 focus_distance: params.float_in("focus_distance", 1.0, f32::MIN_POSITIVE, f32::INFINITY)?,
-                shutter: [params.float("shutter_open", 0.0)?, params.float("shutter_close", 0.0)?],
                 film,
                 window,
             })
@@ -189,12 +185,7 @@ mod projective {
             let [x0, x1, y0, y1] = self.window;
             let (across, down) = ((x1 - x0) / self.film.width as f32, (y0 - y1) / self.film.height as f32);
             [Vector3::new(-across, 0.0, 0.0), Vector3::new(0.0, down, 0.0)]
-                .map(|v| self.world_from_camera.vector(v))
-        }
-
-        #[inline]
-        pub(super) fn time(&self, t: f32) -> f32 {
-            self.shutter[0] + (self.shutter[1] - self.shutter[0]) * t
+                .map(|v| self.place.start.vector(v))
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::texture::onto_plane;
 use crate::{Element, Resolver};
 
 /// A camera without perspective.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Orthographic {
     projective: Projective,
 }
@@ -37,20 +37,22 @@ impl CameraOps for Orthographic {
             origin += Vector3::new(lens.x, lens.y, 0.0) * camera.aperture_radius;
             direction = (focus - origin).normalized();
         }
-        let place = &camera.world_from_camera;
-        let axis = place.vector(direction);
-        let length = axis.length();
-        Ray {
-            origin: place.point(origin),
-            direction: axis / length,
-            t_min: camera.near * length,
-            t_max: camera.far * length,
-            time: camera.time(sample.time),
-        }
+        let time = camera.place.time(sample.time);
+        camera.place.at(time, |place| {
+            let axis = place.vector(direction);
+            let length = axis.length();
+            Ray {
+                origin: place.point(origin),
+                direction: axis / length,
+                t_min: camera.near * length,
+                t_max: camera.far * length,
+                time,
+            }
+        })
     }
 
     fn footprint(&self, _: Point3, n: Vector3) -> [Vector3; 2] {
-        let axis = self.projective.world_from_camera.vector(Vector3::Z);
+        let axis = self.projective.place.start.vector(Vector3::Z);
         self.projective.pixel_steps().map(|step| onto_plane(step, axis, n))
     }
 }

@@ -19,7 +19,7 @@ use crate::texture::onto_plane;
 use crate::{Element, Resolver};
 
 /// A pinhole or thin-lens camera.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Perspective {
     projective: Projective,
 }
@@ -27,7 +27,7 @@ pub struct Perspective {
 impl Element for Perspective {
     const SUMMARY: &'static str = "A pinhole camera, or a thin lens when it has an aperture.";
     const PARAMS: &'static [ParamDoc] = &{
-        let [a, b, c, d, e, f, g, h] = projective::PARAMS;
+        let [a, b, c, d, e, f, g, h, i] = projective::PARAMS;
         [
             ParamDoc {
                 name: "fov",
@@ -61,6 +61,7 @@ impl Element for Perspective {
             f,
             g,
             h,
+            i,
         ]
     };
 
@@ -94,18 +95,19 @@ impl CameraOps for Perspective {
         let direction = direction.normalized();
         // Clipping planes are measured along the axis.
         let per_depth = 1.0 / direction.z;
-        Ray {
-            origin: camera.world_from_camera.point(origin),
-            direction: camera.world_from_camera.vector(direction).normalized(),
+        let time = camera.place.time(sample.time);
+        camera.place.at(time, |place| Ray {
+            origin: place.point(origin),
+            direction: place.vector(direction).normalized(),
             t_min: camera.near * per_depth,
             t_max: camera.far * per_depth,
-            time: camera.time(sample.time),
-        }
+            time,
+        })
     }
 
     fn footprint(&self, p: Point3, n: Vector3) -> [Vector3; 2] {
         let camera = &self.projective;
-        let place = &camera.world_from_camera;
+        let place = &camera.place.start;
         let d = p - place.point(Point3::ORIGIN);
         let steps = camera.pixel_steps();
         let Some(axis) = place.vector(Vector3::Z).try_normalized() else { return [Vector3::ZERO; 2] };

@@ -4,12 +4,15 @@
 //! |---|---|---|---|
 //! | `mapping` | string | latlong | `latlong` or `equal_area` |
 //! | `world_from_camera` | transform | identity | |
+//! | `world_from_camera_end` | transform | the same | where it is at time 1, if it moves from time 0 on |
+//! | `shutter_open`, `shutter_close` | float | 0 | the exposure |
 
 use std::f32::consts::{PI, TAU};
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::{Point2, Point3, Ray, Transform, Vector3, warp};
+use aureole_math::{Point2, Point3, Ray, Vector3, warp};
 
+use super::placed::{self, Placed};
 use super::{CameraOps, CameraSample, cone_footprint};
 use crate::{Element, FilmSpec, Resolver};
 
@@ -20,9 +23,9 @@ enum Mapping {
 }
 
 /// A panoramic camera.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Spherical {
-    world_from_camera: Transform,
+    place: Placed,
     mapping: Mapping,
     film: FilmSpec,
 }
@@ -31,20 +34,15 @@ impl Element for Spherical {
     const SUMMARY: &'static str = "All directions at once, +Y up.";
     const PARAMS: &'static [ParamDoc] = &[
         ParamDoc { name: "mapping", ty: "string", default: "latlong", doc: "`latlong` or `equal_area`" },
-        ParamDoc {
-            name: "world_from_camera",
-            ty: "transform",
-            default: "identity",
-            doc: "where the camera is",
-        },
+        placed::PARAMS[0],
+        placed::PARAMS[1],
+        placed::PARAMS[2],
+        placed::PARAMS[3],
     ];
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
-        for name in ["shutter_open", "shutter_close"] {
-            params.float(name, 0.0)?; // nothing moves yet
-        }
         Ok(Self {
-            world_from_camera: params.transform("world_from_camera")?,
+            place: Placed::from_params(params)?,
             mapping: params
                 .one_of("mapping", &[("latlong", Mapping::LatLong), ("equal_area", Mapping::EqualArea)])?,
             film: resolver.film(),
@@ -66,13 +64,14 @@ impl CameraOps for Spherical {
                 Vector3::new(w.x, w.z, w.y)
             }
         };
-        Ray::new(
-            self.world_from_camera.point(Point3::ORIGIN),
-            self.world_from_camera.vector(direction).normalized(),
-        )
+        let time = self.place.time(sample.time);
+        self.place.at(time, |place| {
+            let ray = Ray::new(place.point(Point3::ORIGIN), place.vector(direction).normalized());
+            Ray { time, ..ray }
+        })
     }
     fn footprint(&self, p: Point3, n: Vector3) -> [Vector3; 2] {
-        let d = p - self.world_from_camera.point(Point3::ORIGIN);
+        let d = p - self.place.start.point(Point3::ORIGIN);
         cone_footprint(d, n, PI / self.film.height as f32)
     }
 }

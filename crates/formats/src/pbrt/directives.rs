@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use aureole_desc::{Family, Params, SceneDesc, SceneError, SourceId, Span, Value, suggest};
+use aureole_desc::{Family, NodeId, Params, SceneDesc, SceneError, SourceId, Span, Value, suggest};
 use aureole_math::{Point3, Transform, Vector3};
 
 use super::color::{self, ColorSpace};
@@ -125,7 +125,14 @@ impl Reader<'_, '_> {
             }
             "ActiveTransform" => self.active_transform(lexer, at)?,
             "TransformTimes" => {
-                numbers::<2>(lexer, at)?; // motion is warned about where it matters
+                let [first, last] = numbers(lexer, at)?;
+                if !(last > first && (last - first).is_finite()) {
+                    return Err(SceneError::invalid(
+                        "the second of the times must be later than the first",
+                        at,
+                    ));
+                }
+                self.transform_times = [first, last];
             }
             "ReverseOrientation" => self.state.reverse_orientation = !self.state.reverse_orientation,
             // An old name, which saves everything as well.
@@ -207,10 +214,9 @@ impl Reader<'_, '_> {
         let params = self.parameters(lexer, at, target)?;
         match word {
             "Camera" => {
-                let ctm = self.ctm(at)?;
-                self.coordinate_systems.insert("camera".into(), self.state.ctm.map(|t| t.inverse()));
-                self.camera =
-                    Some(PendingCamera { kind: kind.into(), params, world_from_camera: ctm.inverse() });
+                let world_from_camera = self.moving_ctm(at)?.map(|t| t.inverse());
+                self.coordinate_systems.insert("camera".into(), world_from_camera);
+                self.camera = Some(PendingCamera { kind: kind.into(), params, world_from_camera });
             }
             "Film" => self.film_directive(kind, params)?,
             "Sampler" => self.sampler(kind, &params)?,
@@ -344,12 +350,22 @@ impl Reader<'_, '_> {
         let Some(&group) = self.objects.get(name) else {
             return Err(unknown("object", name, self.objects.keys(), at));
         };
+        let places = self.moving_ctm(at)?;
+        self.instance(group, places, at);
+        Ok(())
+    }
+
+    /// Adds an instance of a group, which may move.
+    pub(super) fn instance(&mut self, group: NodeId, [start, end]: [Transform; 2], at: Span) {
         let mut params = Params::new();
         params.push("group", Value::Node(group), at);
-        params.push("world_from_object", Value::Transform(self.ctm(at)?), at);
+        params.push("world_from_object", Value::Transform(start), at);
+        if start != end {
+            self.has_motion = true;
+            params.push("world_from_object_end", Value::Transform(end), at);
+        }
         let id = self.add(Family::Shape, "instance", params, at);
         self.desc.shapes.push(id);
-        Ok(())
     }
 
     /// Builds what had to wait, and gives the description.

@@ -62,7 +62,7 @@ impl Reader<'_, '_> {
         let camera = self.camera.take().unwrap_or_else(|| PendingCamera {
             kind: "perspective".into(),
             params: ParamSet::empty(film.span),
-            world_from_camera: Transform::IDENTITY,
+            world_from_camera: [Transform::IDENTITY; 2],
         });
         self.camera_node(&camera, size)
     }
@@ -135,7 +135,7 @@ impl Reader<'_, '_> {
         let PendingCamera { kind, params: given, world_from_camera } = camera;
         let at = given.span;
         // pbrt's camera space is left-handed: its x axis points to the right of the image.
-        let mirrored = *world_from_camera * Transform::scale(Vector3::new(-1.0, 1.0, 1.0));
+        let mirrored = world_from_camera.map(|place| place * Transform::scale(Vector3::new(-1.0, 1.0, 1.0)));
         let mut params = Params::new();
         let kind = match kind.as_str() {
             "perspective" | "orthographic" | "spherical" => kind.as_str(),
@@ -151,7 +151,7 @@ impl Reader<'_, '_> {
             }
         };
         if kind == "spherical" {
-            params.push("world_from_camera", Value::Transform(*world_from_camera), at);
+            self.place(*world_from_camera, given, &mut params)?;
             let mapping = match given.text("mapping")?.unwrap_or("equalarea") {
                 "equalarea" => "equal_area",
                 "equirectangular" => "latlong",
@@ -166,15 +166,36 @@ impl Reader<'_, '_> {
                 given.get(name);
             }
         } else {
-            params.push("world_from_camera", Value::Transform(mirrored), at);
+            self.place(mirrored, given, &mut params)?;
             self.projective(kind, given, size, &mut params)?;
-        }
-        for name in ["shutteropen", "shutterclose"] {
-            given.get(name); // nothing moves yet
         }
         given.finish("Camera", self.context.report);
         let id = self.add(Family::Camera, kind, params, at);
         self.desc.cameras.push(id);
+        Ok(())
+    }
+
+    /// Where a camera is, and when. Time counts from the first of the transform times, in their distance.
+    fn place(
+        &mut self,
+        [start, end]: [Transform; 2],
+        given: &ParamSet,
+        params: &mut Params,
+    ) -> Result<(), SceneError> {
+        let at = given.span;
+        params.push("world_from_camera", Value::Transform(start), at);
+        if start != end {
+            params.push("world_from_camera_end", Value::Transform(end), at);
+        }
+        let [first, last] = self.transform_times;
+        for (theirs, ours, default) in
+            [("shutteropen", "shutter_open", 0.0), ("shutterclose", "shutter_close", 1.0)]
+        {
+            let time = given.float(theirs, default)?;
+            if self.has_motion || start != end {
+                params.push(ours, Value::Float((time - first) / (last - first)), given.at(theirs));
+            }
+        }
         Ok(())
     }
 

@@ -19,7 +19,10 @@ const KINDS: &[&str] =
 impl Reader<'_, '_> {
     pub(super) fn shape(&mut self, kind: &str, given: &ParamSet) -> Result<(), SceneError> {
         let at = given.span;
-        let ctm = self.ctm(at)?;
+        let places = self.moving_ctm(at)?;
+        let moves = places[0] != places[1] && self.open_object.is_none();
+        // What moves becomes a group of its own, whose instance does.
+        let ctm = if moves { Transform::IDENTITY } else { self.ctm(at)? };
         let mut params = Params::new();
         let (name, place) = match kind {
             "trianglemesh" => (self.triangle_mesh(given, &mut params)?, ctm),
@@ -49,6 +52,11 @@ impl Reader<'_, '_> {
         let id = self.add(Family::Shape, name, params, at);
         match &mut self.open_object {
             Some(object) => object.shapes.push(id),
+            None if moves => {
+                let group = Params::new().with("shapes", Value::Nodes(vec![id]));
+                let group = self.add(Family::Shape, "group", group, at);
+                self.instance(group, places, at);
+            }
             None => self.desc.shapes.push(id),
         }
         Ok(())
@@ -65,6 +73,8 @@ impl Reader<'_, '_> {
                 self.warn("area lights in object definitions are ignored, as in pbrt", at);
             } else if self.state.material.is_some_and(|material| self.desc[material].kind == "null") {
                 self.warn("surfaces of `interface` do not shine, as in pbrt", at);
+            } else if self.state.ctm[0] != self.state.ctm[1] {
+                self.warn("what moves does not shine, as in pbrt", at);
             } else {
                 let emission = self.area_light(&area_light)?;
                 params.push("emission", Value::Node(emission), area_light.span);

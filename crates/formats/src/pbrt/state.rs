@@ -62,6 +62,10 @@ pub(super) struct Reader<'a, 'c> {
     /// Files on the way down to the current one.
     pub open_files: Vec<PathBuf>,
     pub in_world: bool,
+    /// The times between which transforms move.
+    pub transform_times: [f64; 2],
+    /// Whether something moves.
+    pub has_motion: bool,
     /// Options given before the film's size is known are built at the end.
     pub film: Option<ParamSet>,
     pub flags: Flags,
@@ -87,7 +91,8 @@ impl Default for Flags {
 pub(super) struct PendingCamera {
     pub kind: String,
     pub params: ParamSet,
-    pub world_from_camera: Transform,
+    /// At the first and the last of the transform times.
+    pub world_from_camera: [Transform; 2],
 }
 
 impl<'a, 'c> Reader<'a, 'c> {
@@ -113,6 +118,8 @@ impl<'a, 'c> Reader<'a, 'c> {
             open_object: None,
             open_files: Vec::new(),
             in_world: false,
+            transform_times: [0.0, 1.0],
+            has_motion: false,
             film: None,
             flags: Flags::default(),
             camera: None,
@@ -138,14 +145,19 @@ impl<'a, 'c> Reader<'a, 'c> {
         found.map(Value::Node).ok_or_else(|| unknown("texture", name, self.textures.keys(), at))
     }
 
-    /// The transform at the start of the shutter: motion is not rendered yet.
+    /// The current transform, of what does not move.
     pub(super) fn ctm(&mut self, at: Span) -> Result<Transform, SceneError> {
-        let [start, end] = self.state.ctm;
+        let [start, end] = self.moving_ctm(at)?;
         if start != end {
-            self.warn("motion is not rendered yet: everything stays where it is when the shutter opens", at);
+            self.warn("only shapes, objects and cameras move: this stays where it is at first", at);
         }
-        if start.is_invertible() {
-            Ok(start)
+        Ok(start)
+    }
+
+    /// The current transforms at the first and the last of the transform times.
+    pub(super) fn moving_ctm(&self, at: Span) -> Result<[Transform; 2], SceneError> {
+        if self.state.ctm.iter().all(Transform::is_invertible) {
+            Ok(self.state.ctm)
         } else {
             Err(SceneError::invalid("the current transform cannot be inverted", at))
         }

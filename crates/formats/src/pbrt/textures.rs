@@ -44,7 +44,7 @@ impl Reader<'_, '_> {
                     2 => self.mapping(given, half, &mut params)?,
                     3 => {
                         params.push("dimension", Value::Int(3), at);
-                        self.place(half, at, &mut params)?;
+                        self.place_texture(half, at, &mut params)?;
                     }
                     _ => {
                         let message = "a checkerboard has two or three dimensions";
@@ -120,7 +120,7 @@ impl Reader<'_, '_> {
     fn noise(&mut self, class: &str, given: &ParamSet) -> Result<(&'static str, Params), SceneError> {
         let at = given.span;
         let mut params = Params::new();
-        self.place(Transform::IDENTITY, at, &mut params)?;
+        self.place_texture(Transform::IDENTITY, at, &mut params)?;
         if class != "windy" {
             params.push("octaves", Value::Int(given.int("octaves", 8)?), given.at("octaves"));
             params.push("roughness", Value::Float(given.float("roughness", 0.5)?), given.at("roughness"));
@@ -143,7 +143,7 @@ impl Reader<'_, '_> {
     }
 
     /// The way from the world into the texture's space, which is that of the current transform, and on by `then`.
-    fn place(&mut self, then: Transform, at: Span, params: &mut Params) -> Result<(), SceneError> {
+    fn place_texture(&mut self, then: Transform, at: Span, params: &mut Params) -> Result<(), SceneError> {
         let texture_from_world = then * self.ctm(at)?.inverse();
         params.push("texture_from_world", Value::Transform(texture_from_world), at);
         Ok(())
@@ -167,7 +167,7 @@ impl Reader<'_, '_> {
             }
             kind @ ("spherical" | "cylindrical") => {
                 params.push("mapping", Value::String(kind.to_owned()), at);
-                self.place(Transform::IDENTITY, at, params)?;
+                self.place_texture(Transform::IDENTITY, at, params)?;
             }
             "planar" => {
                 params.push("mapping", Value::String("planar".to_owned()), at);
@@ -188,7 +188,7 @@ impl Reader<'_, '_> {
                 let plane = plane
                     .filter(Transform::is_invertible)
                     .ok_or_else(|| SceneError::invalid("`v1` and `v2` must span a plane", given.span))?;
-                self.place(plane, at, params)?;
+                self.place_texture(plane, at, params)?;
             }
             other => {
                 let message =

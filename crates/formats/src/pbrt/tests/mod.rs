@@ -219,7 +219,8 @@ fn what_is_not_rendered_is_named() {
         ("Texture \"a\" \"float\" \"ptex\"", "ptex"),
         ("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"", "media"),
         ("MediumInterface \"fog\" \"\"", "media"),
-        ("ActiveTransform EndTime Translate 1 0 0 Shape \"sphere\"", "motion"),
+        ("ActiveTransform EndTime Translate 1 0 0 LightSource \"point\"", "move"),
+        ("AreaLightSource \"diffuse\" ActiveTransform EndTime Translate 1 0 0 Shape \"sphere\"", "moves"),
         ("Shape \"sphere\" \"float radios\" 2", "radios"),
     ] {
         let read = read(&format!("WorldBegin\n{text}"));

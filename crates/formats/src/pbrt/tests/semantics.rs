@@ -231,3 +231,33 @@ fn what_stands_in_for_others_is_warned_about_once() {
     }
     assert!(warnings("Camera \"spherical\" \"float lensradius\" 1 Sampler \"halton\" \"string randomization\" \"none\" WorldBegin").is_empty());
 }
+
+#[test]
+fn shapes_objects_and_cameras_move() {
+    let desc = good(
+        "TransformTimes 1 3 ActiveTransform EndTime Translate 0 0 -1 ActiveTransform All
+         Camera \"perspective\" \"float shutteropen\" 1.5 \"float shutterclose\" 2.5 WorldBegin
+         ObjectBegin \"o\" Shape \"disk\" ObjectEnd Shape \"sphere\"
+         AttributeBegin ActiveTransform EndTime Translate 1 0 0 ActiveTransform All Scale 2 2 2
+         Shape \"sphere\" ObjectInstance \"o\" AttributeEnd Shape \"cylinder\"",
+    );
+    let kinds: Vec<&str> = desc.shapes.iter().map(|&id| desc[id].kind.as_str()).collect();
+    assert_eq!(kinds, ["sphere", "instance", "instance", "cylinder"]);
+    for i in [1, 2] {
+        let mut params = shape(&desc, i).params.clone();
+        let [start, end] =
+            ["world_from_object", "world_from_object_end"].map(|name| params.transform(name).unwrap());
+        let p = aureole_math::Point3::new(1.0, 0.0, 0.0);
+        assert_eq!([start.point(p).x, end.point(p).x], [2.0, 3.0]);
+    }
+    let mut camera = desc[desc.cameras[0]].params.clone();
+    let [start, end] =
+        ["world_from_camera", "world_from_camera_end"].map(|name| camera.transform(name).unwrap());
+    let origin = aureole_math::Point3::ORIGIN;
+    assert_eq!([start.point(origin).z, end.point(origin).z], [0.0, 1.0]);
+    assert_eq!(["shutter_open", "shutter_close"].map(|name| camera.float(name, -1.0).unwrap()), [0.25, 0.75]);
+    // What does not move is described as ever.
+    let still = good("Camera \"perspective\" WorldBegin Shape \"sphere\"");
+    assert!(!still[still.cameras[0]].params.has("shutter_close") && still.shapes.len() == 1);
+    assert!(mistake("TransformTimes 1 1").0.contains("later"));
+}
