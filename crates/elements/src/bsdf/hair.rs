@@ -12,7 +12,8 @@
 //! | `alpha` | texture | 2 | tilt of the scales in degrees |
 //! | `offset` | string | uv | where a ray meets the fibre: `uv`: from v = 0 to 1 across it; `normal`: by the shading normal, for round tubes |
 //!
-//! The fibre runs along the derivative of position by u. The direct reflection, the paths that leave after one and two
+//! The fibre runs along the derivative of position by u, and with `offset` = `normal`, for tubes whose u goes around, across it,
+//! as in Mitsuba. The direct reflection, the paths that leave after one and two
 //! passages, and all others together are four lobes.
 //!
 //! # References
@@ -138,17 +139,19 @@ impl Hair {
 impl MaterialOps for Hair {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
         let texture = &at.texture;
-        let frame = Frame::from_normal_and_tangent(at.frame.n, at.dp_du);
-        let h = match self.offset {
-            Offset::Uv => 2.0 * texture.uv.y - 1.0,
+        let along_u = Frame::from_normal_and_tangent(at.frame.n, at.dp_du);
+        let (frame, gamma) = match self.offset {
+            Offset::Uv => (along_u, (2.0 * texture.uv.y - 1.0).clamp(-0.9999, 0.9999).asin()),
             Offset::Normal => {
+                // Round tubes have u around them.
+                let frame = Frame::from_normal_and_tangent(along_u.n, along_u.t);
                 let wo = frame.to_local(at.wo);
-                -wo.y / wo.y.hypot(wo.z).max(1e-8)
+                (frame, (-wo.y).atan2(wo.z))
             }
         };
         let beta_n = texture.float(self.beta_n).clamp(0.02, 1.0);
         let fibre = Fibre {
-            h: h.clamp(-0.9999, 0.9999),
+            gamma,
             eta: texture.float(self.eta).max(1.0001),
             sigma_a: self.absorption(texture, beta_n),
             beta_m: texture.float(self.beta_m).clamp(0.02, 1.0),

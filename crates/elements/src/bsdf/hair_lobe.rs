@@ -13,8 +13,8 @@ const P_MAX: usize = 3;
 /// A fibre where a ray meets it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fibre {
-    /// Offset across the fibre, in (-1, 1).
-    pub h: f32,
+    /// The angle around the fibre between the viewer and where the ray meets it; its sine is the offset across the fibre.
+    pub gamma: f32,
     /// Index of refraction.
     pub eta: f32,
     /// Absorption per radius.
@@ -30,6 +30,8 @@ pub(super) struct Fibre {
 /// A fibre's scattering; local X runs along the fibre.
 #[derive(Clone, Copy, Debug)]
 pub struct HairLobe {
+    gamma: f32,
+    /// Sine of that: the offset across the fibre.
     h: f32,
     eta: f32,
     sigma_a: Spectrum,
@@ -123,8 +125,9 @@ impl HairLobe {
             let (sin, cos) = (k * fibre.alpha).sin_cos();
             [sin, cos]
         });
-        let (h, eta, sigma_a) = (fibre.h, fibre.eta, fibre.sigma_a);
-        Self { h, eta, sigma_a, v: [v0, 0.25 * v0, 4.0 * v0, 4.0 * v0], s, tilt }
+        let (gamma, h) = (fibre.gamma, fibre.gamma.sin());
+        let (eta, sigma_a) = (fibre.eta, fibre.sigma_a);
+        Self { gamma, h, eta, sigma_a, v: [v0, 0.25 * v0, 4.0 * v0, 4.0 * v0], s, tilt }
     }
 
     fn view(&self, wo: Vector3) -> View {
@@ -139,7 +142,7 @@ impl HairLobe {
         let ap = self.attenuation(wo.cos_theta, transmittance);
         let total: f32 = ap.iter().map(|a| a.average()).sum();
         let probability = ap.map(|a| a.average() / total);
-        View { wo, gamma_o: self.h.asin(), gamma_t: sin_gamma_t.asin(), ap, probability }
+        View { wo, gamma_o: self.gamma, gamma_t: sin_gamma_t.asin(), ap, probability }
     }
 
     /// How much light takes each path.
@@ -278,9 +281,9 @@ mod tests {
         for (sigma_a, beta_m, beta_n, alpha, expected) in fibres {
             for (pair, expected) in pairs.iter().zip(expected) {
                 let [wo, wi] = pair.map(turned);
-                let h = -wo.y / wo.y.hypot(wo.z);
+                let gamma = (-wo.y).atan2(wo.z);
                 let (eta, alpha) = (1.55 / 1.000_277, alpha.to_radians());
-                let lobe = HairLobe::new(&Fibre { h, eta, sigma_a, beta_m, beta_n, alpha });
+                let lobe = HairLobe::new(&Fibre { gamma, eta, sigma_a, beta_m, beta_n, alpha });
                 let found = (lobe.eval(wo, wi, TransportMode::Radiance) * wi.z.abs())[0];
                 assert!((found - expected).abs() < 0.01 * expected, "{found}, not {expected}");
             }

@@ -49,6 +49,14 @@ pub struct BsdfSample {
     pub interior: Option<u8>,
 }
 
+impl BsdfSample {
+    /// Whether the direction goes straight through, as if there were no surface.
+    #[inline]
+    pub fn is_straight(&self) -> bool {
+        self.flags.delta && self.flags.transmission && self.eta == 1.0
+    }
+}
+
 impl Placed {
     /// Both directions in the lobe's frame, unless a bent normal puts `wi` on the wrong side.
     #[inline]

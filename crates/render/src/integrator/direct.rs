@@ -126,6 +126,10 @@ fn light_along(
 }
 
 impl RayIntegrator for Direct {
+    fn hides_emitters(&self) -> bool {
+        self.hide_emitters
+    }
+
     fn radiance(&self, scene: &Scene, start: &PathStart, rays: &mut u64) -> Spectrum {
         *rays += 1;
         let (ray, wo) = (&start.ray, -start.ray.direction);

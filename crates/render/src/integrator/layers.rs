@@ -207,7 +207,8 @@ impl Layered {
         batch.rays += u64::from(self.looks);
         let at = hit.map(|hit| (hit, scene.interaction(&start.ray, &hit)));
         for layer in &self.layers {
-            let alpha = || f32::from(u8::from(at.is_some() || !scene.environments().is_empty()));
+            let sky_covers = !self.inner.hides_emitters() && !scene.environments().is_empty();
+            let alpha = || f32::from(u8::from(at.is_some() || sky_covers));
             match (layer.quantity, &at) {
                 (Alpha, _) => batch.layers.push(alpha()),
                 (Radiance, _) => {

@@ -68,6 +68,11 @@ pub trait Integrator: Send + Sync {
         &[]
     }
 
+    /// Whether lights that the camera sees directly are left out of the picture.
+    fn hides_emitters(&self) -> bool {
+        false
+    }
+
     /// Estimates the radiance along each ray of a batch; `radiance` comes in black.
     fn trace(&self, scene: &Scene, starts: &[PathStart], radiance: &mut [Spectrum], batch: &mut Batch);
 
@@ -88,12 +93,21 @@ pub trait Integrator: Send + Sync {
 pub(crate) trait RayIntegrator: Send + Sync {
     /// Estimates the radiance along a ray, counting the rays traced.
     fn radiance(&self, scene: &Scene, start: &PathStart, rays: &mut u64) -> Spectrum;
+
+    /// As [`Integrator::hides_emitters`].
+    fn hides_emitters(&self) -> bool {
+        false
+    }
 }
 
 /// Runs a [`RayIntegrator`] over batches.
 struct OneByOne<T>(T);
 
 impl<T: RayIntegrator> Integrator for OneByOne<T> {
+    fn hides_emitters(&self) -> bool {
+        self.0.hides_emitters()
+    }
+
     fn trace(&self, scene: &Scene, starts: &[PathStart], radiance: &mut [Spectrum], batch: &mut Batch) {
         for (start, radiance) in starts.iter().zip(radiance) {
             *radiance = self.0.radiance(scene, start, &mut batch.rays);

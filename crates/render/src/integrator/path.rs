@@ -64,6 +64,8 @@ struct Segment {
     path: u32,
     /// Segments before this one; all those inside a body that scatters are one.
     depth: u32,
+    /// Whether nothing but surfaces that let it pass straight through came before: what it finds is seen directly.
+    is_direct: bool,
     place: Place,
 }
 
@@ -126,7 +128,7 @@ impl Path {
             segment.throughput = walk::after_flight(&interior, segment.throughput, ray.origin, hit.t);
         }
         let found = &mut radiance[segment.path as usize];
-        let is_visible = segment.depth > 0 || !self.hide_emitters;
+        let is_visible = !(segment.is_direct && self.hide_emitters);
         if !hit.is_some() {
             watch.hear(|| Event::Escape { direction: ray.direction });
             if is_visible {
@@ -250,6 +252,7 @@ impl Path {
             eta: segment.eta * drawn.eta,
             path: segment.path,
             depth: depth + 1,
+            is_direct: segment.is_direct && drawn.is_straight(),
             place: Self::place_after(state, &segment, &drawn, drawn.wi.dot(at.surface.frame.n) < 0.0),
         };
         if next.throughput.is_black() {
@@ -313,6 +316,7 @@ impl PathState {
                 eta: 1.0,
                 path: i as u32,
                 depth: 0,
+                is_direct: true,
                 place: Place::Outside,
             });
         }
@@ -365,6 +369,10 @@ impl Path {
 }
 
 impl Integrator for Path {
+    fn hides_emitters(&self) -> bool {
+        self.hide_emitters
+    }
+
     fn trace(&self, scene: &Scene, starts: &[PathStart], radiance: &mut [Spectrum], batch: &mut Batch) {
         self.advance(scene, starts, radiance, batch, &mut Nobody);
     }

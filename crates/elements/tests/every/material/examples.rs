@@ -325,6 +325,21 @@ pub(super) fn examples(world: &mut World) -> Vec<Example> {
         ("hair", false, {
             world.add(bsdf, "hair", [("beta_m", Float(0.4)), ("beta_n", Float(0.5)), ("alpha", Float(3.0))])
         }),
+        ("Mitsuba's hair", false, {
+            world.add(
+                bsdf,
+                "hair",
+                [
+                    ("offset", word("normal")),
+                    ("eumelanin", Float(0.4)),
+                    ("pheomelanin", Float(0.2)),
+                    ("beta_m", Float(0.35)),
+                    ("beta_n", Float(0.4)),
+                    ("alpha", Float(3.0)),
+                    ("eta", Float(1.55)),
+                ],
+            )
+        }),
         ("smooth light hair", false, {
             world.add(bsdf, "hair", [("reflectance", rgb(0.9, 0.7, 0.4)), ("beta_m", Float(0.15))])
         }),
