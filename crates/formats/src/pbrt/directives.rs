@@ -2,13 +2,13 @@
 
 use std::rc::Rc;
 
-use aureole_desc::{Family, NodeId, Params, SceneDesc, SceneError, SourceId, Span, Value, suggest};
+use aureole_desc::{SceneDesc, SceneError, SourceId, Span, suggest};
 use aureole_math::{Point3, Transform, Vector3};
 
 use super::color::{self, ColorSpace};
 use super::lexer::{Lexer, Spanned, Token};
 use super::params::{self, ParamSet, number};
-use super::state::{OpenObject, PendingCamera, Reader, Saved, unknown};
+use super::state::{PendingCamera, Reader, Saved, unknown};
 use crate::file;
 
 /// All directives, for "did you mean".
@@ -264,7 +264,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn save(&mut self, saved: Saved, at: Span) -> Result<(), SceneError> {
+    pub(super) fn save(&mut self, saved: Saved, at: Span) -> Result<(), SceneError> {
         let limit = self.limits().max_nesting;
         if self.saved.len() >= limit {
             let found = self.saved.len() as u64 + 1;
@@ -323,49 +323,6 @@ impl Reader<'_, '_> {
             Some((_, at)) => Err(SceneError::syntax("this block is not ended in its file", *at)),
             None => Ok(()),
         }
-    }
-
-    fn object_begin(&mut self, name: String, at: Span) -> Result<(), SceneError> {
-        if self.open_object.is_some() {
-            return Err(SceneError::syntax("an object cannot be begun inside another", at));
-        }
-        self.save(Saved::Object(Box::new(self.state.clone())), at)?;
-        self.open_object = Some(OpenObject { name, shapes: Vec::new(), span: at });
-        Ok(())
-    }
-
-    fn object_end(&mut self) {
-        if let Some(object) = self.open_object.take() {
-            let params = Params::new().with("shapes", Value::Nodes(object.shapes));
-            let id = self.add(Family::Shape, "group", params, object.span);
-            self.desc[id].name = Some(object.name.clone());
-            self.objects.insert(object.name, id);
-        }
-    }
-
-    fn object_instance(&mut self, name: &str, at: Span) -> Result<(), SceneError> {
-        if self.open_object.is_some() {
-            return Err(SceneError::syntax("an object cannot be instanced inside another", at));
-        }
-        let Some(&group) = self.objects.get(name) else {
-            return Err(unknown("object", name, self.objects.keys(), at));
-        };
-        let places = self.moving_ctm(at)?;
-        self.instance(group, places, at);
-        Ok(())
-    }
-
-    /// Adds an instance of a group, which may move.
-    pub(super) fn instance(&mut self, group: NodeId, [start, end]: [Transform; 2], at: Span) {
-        let mut params = Params::new();
-        params.push("group", Value::Node(group), at);
-        params.push("world_from_object", Value::Transform(start), at);
-        if start != end {
-            self.has_motion = true;
-            params.push("world_from_object_end", Value::Transform(end), at);
-        }
-        let id = self.add(Family::Shape, "instance", params, at);
-        self.desc.shapes.push(id);
     }
 
     /// Builds what had to wait, and gives the description.

@@ -8,10 +8,11 @@
 mod color;
 mod curve;
 mod directives;
+mod flags;
 mod lexer;
 mod lights;
 mod materials;
-mod option;
+mod objects;
 mod options;
 mod params;
 mod shapes;
