@@ -12,6 +12,7 @@
 //! The plugins' manual at <https://mitsuba.readthedocs.io/en/stable/src/plugin_reference.html>.
 
 mod bsdf;
+mod ellipsoids;
 mod emitter;
 mod film;
 mod integrator;

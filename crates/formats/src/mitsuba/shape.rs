@@ -8,12 +8,12 @@ use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use super::scope::Scope;
-use super::sensor;
 use super::translate::{MeshKey, Orientation, Translator};
 use super::tree::{ObjectId, Tag};
+use super::{ellipsoids, sensor};
 use crate::mesh::{curves, obj, ply, serialized, vol};
 
-/// Mitsuba's plugins and Aureole's words for them. Not all of the latter can be rendered yet.
+/// Mitsuba's plugins and Aureole's words for them.
 const KINDS: &[(&str, &str)] = &[
     ("sphere", "sphere"),
     ("disk", "disk"),
@@ -30,8 +30,8 @@ const KINDS: &[(&str, &str)] = &[
     ("heightfield", "height_field"),
     ("bsplinecurve", "tube"),
     ("linearcurve", "tube"),
-    ("ellipsoids", "ellipsoids"),
-    ("ellipsoidsmesh", "ellipsoids"),
+    ("ellipsoids", "sphere"),
+    ("ellipsoidsmesh", "sphere"),
 ];
 
 /// Adds a shape of the scene. Groups appear only by their instances; merged shapes are shapes like others.
@@ -54,6 +54,7 @@ fn gather(
     t.count_gathered(object.span)?;
     match object.plugin.as_str() {
         "shapegroup" => Ok(()),
+        "ellipsoids" | "ellipsoidsmesh" => ellipsoids::gather(t, id, shapes),
         "merge" if depth > t.context.options.limits.max_nesting => {
             Err(SceneError::invalid("`merge` contains itself", object.span))
         }
@@ -94,7 +95,6 @@ pub(super) fn translate<'a>(
         "sdf_grid" => sdf_grid(t, &mut scope)?,
         "tube" => tube(t, &mut scope)?,
         "height_field" => height_field(t, &mut scope)?,
-        "ellipsoids" if scope.has("filename") => t.put_path(&mut scope)?,
         _ => {}
     }
     surface(t, &mut scope)?;
@@ -107,7 +107,7 @@ pub(super) fn translate<'a>(
 }
 
 /// What a shape is made of, whether it shines, and what it encloses.
-fn surface<'a>(t: &mut Translator<'a, '_, '_>, scope: &mut Scope<'a>) -> Result<(), SceneError> {
+pub(super) fn surface<'a>(t: &mut Translator<'a, '_, '_>, scope: &mut Scope<'a>) -> Result<(), SceneError> {
     let emitter = scope.take_child(&[Tag::Emitter]);
     // No path from the camera finds a light of a single direction, in Mitsuba neither.
     if let Some(emitter) = emitter.filter(|child| t.tree.get(child.id).plugin != "directionalarea") {

@@ -31,24 +31,74 @@ pub(super) fn read(header: &Header, body: &[u8], limits: &Limits) -> Result<Mesh
 fn read_elements(header: &Header, mut numbers: impl Numbers, limits: &Limits) -> Result<Mesh, MeshError> {
     let mut mesh = Mesh::default();
     for element in &header.elements {
-        let row = element.min_row_size(header.encoding) as u64;
-        // The last row of an ascii file needs no newline.
-        if element.count.saturating_mul(row) > numbers.left() as u64 + 1 {
-            return Err(MeshError::content(format!(
-                "{} {} elements cannot fit into the {} bytes that are left",
-                element.count,
-                element.name,
-                numbers.left()
-            )));
-        }
+        check_fits(element, header.encoding, &numbers)?;
         match element.name.as_str() {
             "vertex" => read_vertices(element, &mut numbers, &mut mesh, limits)?,
             "face" => read_faces(element, &mut numbers, &mut mesh, limits)?,
-            _ if row == 0 => {}
+            _ if element.properties.is_empty() => {}
             _ => (0..element.count).try_for_each(|_| skip_row(element, &mut numbers))?,
         }
     }
     Ok(mesh)
+}
+
+/// Columns of the first element by their names, row by row; what comes after it is left alone.
+pub(super) fn columns(
+    header: &Header,
+    body: &[u8],
+    names: &[&str],
+    limits: &Limits,
+) -> Result<Vec<f32>, MeshError> {
+    match header.encoding {
+        Encoding::Ascii => {
+            read_columns(header, Ascii { all: body, rest: body, header_lines: header.lines }, names, limits)
+        }
+        Encoding::LittleEndian => read_columns(header, Binary::<false> { rest: body }, names, limits),
+        Encoding::BigEndian => read_columns(header, Binary::<true> { rest: body }, names, limits),
+    }
+}
+
+fn read_columns(
+    header: &Header,
+    mut numbers: impl Numbers,
+    names: &[&str],
+    limits: &Limits,
+) -> Result<Vec<f32>, MeshError> {
+    let element = header.elements.first().ok_or_else(|| MeshError::content("there are no elements"))?;
+    check_fits(element, header.encoding, &numbers)?;
+    let place = |name: &&str| {
+        let found = element.properties.iter().position(|property| property.name == *name);
+        found.ok_or_else(|| MeshError::content(format!("a {} has no `{name}`", element.name)))
+    };
+    let places = names.iter().map(place).collect::<Result<Vec<_>, _>>()?;
+    let count = check_count("rows", element.count, limits)?;
+    let mut row = vec![0.0; element.properties.len()];
+    let mut values = Vec::new();
+    for _ in 0..count {
+        for (property, value) in element.properties.iter().zip(&mut row) {
+            match property.kind {
+                Kind::One(scalar) => *value = number(&mut numbers, scalar, element)? as f32,
+                kind @ Kind::List { .. } => skip(kind, element, &mut numbers)?,
+            }
+        }
+        values.extend(places.iter().map(|&place| row[place]));
+    }
+    Ok(values)
+}
+
+/// Whether the rows of an element may fit into what is left.
+fn check_fits(element: &Element, encoding: Encoding, numbers: &impl Numbers) -> Result<(), MeshError> {
+    let row = element.min_row_size(encoding) as u64;
+    // The last row of an ascii file needs no newline.
+    if element.count.saturating_mul(row) > numbers.left() as u64 + 1 {
+        return Err(MeshError::content(format!(
+            "{} {} elements cannot fit into the {} bytes that are left",
+            element.count,
+            element.name,
+            numbers.left()
+        )));
+    }
+    Ok(())
 }
 
 /// The next number, or an error that says where it is missing.

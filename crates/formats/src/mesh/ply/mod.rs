@@ -48,5 +48,23 @@ pub fn decode(bytes: &[u8], limits: &Limits) -> Result<Mesh, MeshError> {
     Ok(mesh)
 }
 
+/// Columns of a file's first element by their names, row by row: clouds of points are such tables.
+///
+/// # Errors
+/// A file that cannot be read, is not PLY, ends early, or lacks a column.
+pub fn read_columns(path: &Path, names: &[&str], limits: &Limits, at: Span) -> Result<Vec<f32>, SceneError> {
+    let bytes = file::read_bytes(path, limits, at)?;
+    decode_columns(&bytes, names, limits).map_err(|error| error.in_file(path, at))
+}
+
+/// The same from memory.
+///
+/// # Errors
+/// As [`read_columns`].
+pub fn decode_columns(bytes: &[u8], names: &[&str], limits: &Limits) -> Result<Vec<f32>, MeshError> {
+    let (header, rest) = header::Header::parse(bytes)?;
+    body::columns(&header, rest, names, limits)
+}
+
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,7 @@
 use aureole_desc::{AttributeDomain, Limits, Mesh};
 use aureole_math::Pcg32;
 
-use super::decode;
+use super::{decode, decode_columns};
 
 fn read(text: &str) -> Result<Mesh, String> {
     decode(text.as_bytes(), &Limits::default()).map_err(|error| error.to_string())
@@ -105,5 +105,16 @@ fn broken_files_never_panic() {
                 mesh.check().unwrap();
             }
         }
+    }
+}
+
+#[test]
+fn columns_are_found_by_name() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty list uchar int f\nproperty float y\nend_header\n1 2 8 9 3\n4 0 5\n";
+    let columns = |names: &[&str]| decode_columns(text.as_bytes(), names, &Limits::default());
+    assert_eq!(columns(&["y", "x"]).unwrap(), [3.0, 1.0, 5.0, 4.0]);
+    assert!(columns(&["z"]).is_err());
+    for length in 0..text.len() - 2 {
+        assert!(decode_columns(&text.as_bytes()[..length], &["y"], &Limits::default()).is_err(), "{length}");
     }
 }

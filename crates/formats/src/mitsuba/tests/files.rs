@@ -1,6 +1,7 @@
 use std::path::Path;
 
 use aureole_desc::{Report, SceneDesc, SceneError, Sources};
+use aureole_math::{Point3, Transform, Vector3};
 
 use super::{read_with, show};
 use crate::{LoadOptions, load};
@@ -134,4 +135,42 @@ fn definitions_of_the_user_win() {
     assert_eq!(show(&scene, scene.shapes[0]), "sphere(radius=7)");
     assert_eq!(outcome.report.warnings.len(), 1);
     assert!(outcome.report.warnings[0].message.contains("$other"));
+}
+
+#[test]
+fn ellipsoids_are_stretched_spheres() {
+    let folder = folder(&[
+        (
+            "main.xml",
+            "<scene version=\"3.0.0\"><shape type=\"ellipsoids\"><string name=\"filename\" value=\"e.ply\"/>\
+            <float name=\"extent\" value=\"2\"/><transform name=\"to_world\"><translate x=\"10\"/></transform>\
+            <bsdf type=\"diffuse\"/></shape></scene>",
+        ),
+        (
+            "e.ply",
+            // The sizes are the logarithms of 1, 2 and 3; the second is turned by 90 degrees about z.
+            "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
+            property float scale_0\nproperty float scale_1\nproperty float scale_2\n\
+            property float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float rot_3\nend_header\n\
+            1 2 3 0 0.6931472 1.0986123 1 0 0 0\n1 2 3 0 0.6931472 1.0986123 1 0 0 1\n",
+        ),
+    ]);
+    let (scene, report) = read(&folder.path().join("main.xml")).unwrap();
+    assert!(report.warnings.iter().all(|warning| !warning.message.contains("ellipsoid")), "{report:?}");
+    let places: Vec<Transform> = scene
+        .shapes
+        .iter()
+        .map(|&id| scene[id].params.clone().transform("world_from_object").unwrap())
+        .collect();
+    let expected = [
+        [[2.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 6.0]],
+        [[0.0, 2.0, 0.0], [-4.0, 0.0, 0.0], [0.0, 0.0, 6.0]],
+    ];
+    for (place, columns) in places.iter().zip(expected) {
+        assert!((place.point(Point3::ORIGIN) - Point3::new(11.0, 2.0, 3.0)).length() < 1e-5);
+        for (axis, column) in [Vector3::X, Vector3::Y, Vector3::Z].into_iter().zip(columns) {
+            assert!((place.vector(axis) - Vector3::from(column)).length() < 1e-4, "{place:?}");
+        }
+    }
+    assert_eq!(places.len(), 2);
 }
