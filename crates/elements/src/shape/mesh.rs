@@ -204,6 +204,10 @@ impl TriangleMesh {
             return None;
         }
         let b1 = (s.dot(p) / below).clamp(0.0, 1.0);
+        // Beyond the largest numbers.
+        if b1.is_nan() {
+            return None;
+        }
         let b2 = (w.dot(s.cross(e1)) / below).clamp(0.0, 1.0 - b1);
         Some([1.0 - b1 - b2, b1, b2])
     }

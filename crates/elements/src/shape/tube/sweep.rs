@@ -168,7 +168,9 @@ impl Search {
                 return;
             }
             u = (u - step_u.clamp(-0.5, 0.5)).clamp(-0.5, 1.5);
-            t -= step_t.clamp(-4.0 * r, 4.0 * r);
+            // Beyond its ends the radius may be negative.
+            let stride = 4.0 * r.abs();
+            t -= step_t.clamp(-stride, stride);
             if step_u.abs() < 1e-8 && step_t.abs() < 1e-8 * (r + t.abs()) {
                 let is_inside = (-SLACK..=1.0 + SLACK).contains(&u);
                 // Outside, the gradient of |q| - r along the curve's normal plane faces the ray.
@@ -181,6 +183,24 @@ impl Search {
                 }
                 return;
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn radii_below_zero_are_met_by_nothing_worse_than_a_miss() {
+        // From thick to thinner than nothing: Newton's method wanders where the radius is negative.
+        let point = |x: f64, r: f64| [x, 0.1, 2.0 + 0.3 * x, r];
+        let piece = Cubic([point(-1.0, 1.0), point(-0.3, -3.0), point(0.3, -3.0), point(1.0, 1.0)]);
+        for i in 0..64 {
+            let u = f64::from(i) / 63.0;
+            let mut search = Search { t_min: 0.0, t_max: f64::INFINITY, cull_back: false, best: None };
+            search.refine(&piece, 1.0, u, 0.0, 1.0);
+            assert!(search.best.is_none_or(|hit| hit.t.is_finite()));
         }
     }
 }
