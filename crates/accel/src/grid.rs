@@ -35,6 +35,13 @@ impl Default for GridConfig {
     }
 }
 
+impl GridConfig {
+    /// The density, within reason.
+    fn sound_density(&self) -> f64 {
+        f64::from(self.density.clamp(1e-3, 1e3))
+    }
+}
+
 /// Cells along an axis at most.
 const MAX_SIDE: f64 = 1024.0;
 /// Entries in the lists of all cells at most, for each object; never more than 32 bits can number.
@@ -75,6 +82,8 @@ pub(crate) struct Grid {
 struct Builder<'a, T> {
     things: &'a T,
     config: &'a GridConfig,
+    /// How far cells reach out at least.
+    slack: f32,
     /// Entries that the lists may still have.
     left: usize,
 }
@@ -86,11 +95,10 @@ impl<T: Things> Builder<'_, T> {
         ids: &[u32],
         bounds: Bounds3,
         density: f64,
-        slack: f32,
         limit: usize,
         levels: usize,
     ) -> Option<Grid> {
-        let mut grid = Grid::empty(bounds, ids.len(), density, slack);
+        let mut grid = Grid::empty(bounds, ids.len(), density, self.slack);
         let mut cells: Vec<u32> = vec![0; grid.sides.iter().product()];
         let (mut entries, mut tests) = (0, 0);
         for &id in ids {
@@ -162,8 +170,7 @@ impl<T: Things> Builder<'_, T> {
         let space = grid.space(grid.cell(cell));
         let around = list.iter().fold(Bounds3::EMPTY, |all, &id| all.union(self.things.bounds(id)));
         let bounds = Bounds3 { min: space.min.max(around.min), max: space.max.min(around.max) };
-        let density = f64::from(self.config.density.clamp(1e-3, 1e3));
-        self.grid(list, bounds, density, grid.slack, limit, levels)
+        self.grid(list, bounds, self.config.sound_density(), limit, levels)
     }
 }
 
@@ -174,10 +181,10 @@ impl Grid {
         let all = ids.iter().fold(Bounds3::EMPTY, |all, &i| all.union(things.bounds(i)));
         let slack = (all.max - all.min).length() * OVERLAP[1];
         let most = MAX_ENTRIES.saturating_mul(count).min((NESTED - 1) as usize);
-        let mut density = f64::from(config.density.clamp(1e-3, 1e3));
+        let mut density = config.sound_density();
         loop {
-            let mut builder = Builder { things, config, left: most };
-            match builder.grid(&ids, all, density, slack, most, LEVELS) {
+            let mut builder = Builder { things, config, slack, left: most };
+            match builder.grid(&ids, all, density, most, LEVELS) {
                 Some(grid) => return grid,
                 None => density /= 8.0, // large objects, each in a great many cells
             }

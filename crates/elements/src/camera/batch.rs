@@ -4,7 +4,7 @@
 //! |---|---|---|---|
 //! | `cameras` | cameras | | from left to right; the film's width is shared evenly |
 
-use aureole_desc::{ParamDoc, Params, SceneError, Span};
+use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point2, Ray};
 
 use super::{Camera, CameraOps, CameraSample};
@@ -30,7 +30,7 @@ impl Element for Batch {
         let count = u32::try_from(nodes.len()).unwrap_or(u32::MAX);
         if count == 0 || !film.width.is_multiple_of(count) {
             let message = format!("a film {} pixels wide cannot be shared by {count} cameras", film.width);
-            return Err(SceneError::invalid(message, if at.is_none() { Span::NONE } else { at }));
+            return Err(SceneError::invalid(message, at));
         }
         let film = FilmSpec { width: film.width / count, ..film };
         let cameras: Result<Vec<_>, _> = nodes.into_iter().map(|node| resolver.camera(node, film)).collect();
