@@ -424,6 +424,13 @@ impl Compiler<'_> {
     ) -> Scene {
         let has_alpha =
             self.levels.iter().flatten().any(|object| matches!(object, Object::Solid { alpha: Some(_), .. }));
+        let materials = &self.resolve.materials;
+        let is_see_through = self.levels.iter().flatten().chain(&self.unbounded).any(|object| match object {
+            Object::Solid { material, .. } => {
+                materials[*material].is_see_through(materials, &self.resolve.textures)
+            }
+            Object::Instance(_) => false,
+        });
         // Many samples a pixel do part of the filtering themselves, as in pbrt.
         let is_filtered = self.resolve.textures.iter().any(|(_, texture)| texture.is_filtered());
         let samples = sampler.sample_count().max(1) as f32;
@@ -448,6 +455,7 @@ impl Compiler<'_> {
             levels: self.levels,
             unbounded: self.unbounded,
             has_alpha,
+            is_see_through,
             footprint_scale,
         };
         let counts = scene.counts();

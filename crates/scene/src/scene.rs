@@ -74,6 +74,7 @@ pub struct Scene {
     pub(crate) levels: Vec<Vec<Object>>,
     pub(crate) unbounded: Vec<Object>,
     pub(crate) has_alpha: bool,
+    pub(crate) is_see_through: bool,
     /// By how much footprints are narrower than a pixel; zero where no texture is filtered.
     pub(crate) footprint_scale: f32,
     /// What was built from which nodes.
@@ -171,6 +172,42 @@ impl Scene {
                 *blocked = *blocked || self.with_unbounded(ray, None).is_some();
             }
         }
+    }
+
+    /// Whether some surface may let light pass straight on, as if it were not there.
+    #[inline]
+    pub fn is_see_through(&self) -> bool {
+        self.is_see_through
+    }
+
+    /// How much light gets along a ray to its end.
+    #[inline]
+    pub fn visibility(&self, ray: &Ray, wavelengths: Wavelengths) -> Spectrum {
+        match (self.occluded(ray), self.is_see_through) {
+            (false, _) => Spectrum::ONE,
+            (true, false) => Spectrum::ZERO,
+            (true, true) => self.transmittance(ray, wavelengths),
+        }
+    }
+
+    /// How much light gets along a ray to its end through the surfaces on it, each of which may let it pass straight on.
+    pub fn transmittance(&self, ray: &Ray, wavelengths: Wavelengths) -> Spectrum {
+        /// More surfaces than this count as opaque, so that no ray goes on for ever.
+        const MOST: u32 = 1 << 12;
+        let (mut ray, mut passed, mut bsdf) = (*ray, Spectrum::ONE, Bsdf::new());
+        for _ in 0..MOST {
+            let Some(hit) = self.closest_hit(&ray) else { return passed };
+            let at = self.interaction(&ray, &hit);
+            self.bsdf_into(&at, -ray.direction.normalized(), wavelengths, &mut bsdf);
+            passed *= bsdf.null_transmittance();
+            if passed.is_black() {
+                break;
+            }
+            let onward = at.surface.spawn_ray(ray.direction, ray.time);
+            let behind = (onward.origin - ray.origin).dot(ray.direction) / ray.direction.length_squared();
+            ray = onward.until(ray.t_max - behind);
+        }
+        Spectrum::ZERO
     }
 
     /// The nearer of a hit and those with shapes that have no box.

@@ -10,7 +10,7 @@
 //! | `specular_reflectance` | texture | 1 | factor on the coat's reflection |
 //! | `int_ior`, `ext_ior` | float or name | polypropylene, air | indices of the coat and outside |
 //!
-//! and `distribution`, `alpha`, `alpha_u`, `alpha_v`.
+//! and `distribution`, `alpha`, `alpha_u`, `alpha_v`, `shadowing`.
 //!
 //! References: [Baek et al. 2018] "Simultaneous Acquisition of Polarimetric SVBRDF and Normals".
 
@@ -41,8 +41,8 @@ impl Element for BaekPlastic {
     const SUMMARY: &'static str = "A rough coat added to a matte base that light refracts into and out of.";
     const PARAMS: &'static [ParamDoc] = &{
         let [a, b, c, d, _] = PLASTIC_PARAMS;
-        let [e, f, g, h] = ROUGHNESS_PARAMS;
-        [a, b, c, d, e, f, g, h]
+        let [e, f, g, h, i] = ROUGHNESS_PARAMS;
+        [a, b, c, d, e, f, g, h, i]
     };
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {

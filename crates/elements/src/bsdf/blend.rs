@@ -74,6 +74,10 @@ impl MaterialOps for Blend {
         [self.a, self.b].into_iter().any(|material| materials[material].shines(materials))
     }
 
+    fn is_see_through(&self, materials: &Arena<Material>, textures: &Arena<Texture>) -> bool {
+        [self.a, self.b].into_iter().any(|part| materials[part].is_see_through(materials, textures))
+    }
+
     fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {
         at.nested(self.a).lerp(at.nested(self.b), at.texture.float(self.weight).clamp(0.0, 1.0))
     }

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use aureole_math::{Point2, Vector3, reflect, refract};
 
 use super::fresnel;
-use super::microfacet::{Distribution, Microfacet};
+use super::microfacet::{Distribution, Microfacet, Shadowing};
 
 /// Points of the quadrature in each dimension.
 pub(super) const QUADRATURE: usize = 32;
@@ -53,7 +53,7 @@ pub(super) fn transmittance(surface: &Microfacet, cos: f32, eta: f32) -> f32 {
     average(surface, wo, |m| match refract(wo, m, eta) {
         Some(refraction) if refraction.wt.z < 0.0 => {
             let f = fresnel::dielectric(wo.dot(m), eta).reflectance;
-            (1.0 - f) * surface.g1(refraction.wt, m)
+            (1.0 - f) * surface.g_given_visible(wo, refraction.wt, m)
         }
         _ => 0.0,
     })
@@ -64,7 +64,10 @@ pub(super) fn reflectance(surface: &Microfacet, cos: f32, eta: f32) -> f32 {
     let wo = direction(cos);
     average(surface, wo, |m| {
         let wi = reflect(wo, m);
-        if wi.z <= 0.0 { 0.0 } else { fresnel::dielectric(wo.dot(m), eta).reflectance * surface.g1(wi, m) }
+        if wi.z <= 0.0 {
+            return 0.0;
+        }
+        fresnel::dielectric(wo.dot(m), eta).reflectance * surface.g_given_visible(wo, wi, m)
     })
 }
 
@@ -85,33 +88,38 @@ pub(super) struct AlbedoTable {
 
 impl AlbedoTable {
     /// Tabulates a directional albedo.
-    fn new(distribution: Distribution, albedo: impl Fn(&Microfacet, f32) -> f32) -> Self {
+    fn new(
+        distribution: Distribution,
+        shadowing: Shadowing,
+        albedo: impl Fn(&Microfacet, f32) -> f32,
+    ) -> Self {
         let step = |i: usize| i as f32 / (ENTRIES - 1) as f32;
         let values = std::array::from_fn(|row| {
             let alpha = step(row).max(1e-3);
-            let surface = Microfacet::new(distribution, alpha, alpha);
+            let surface = Microfacet::new(distribution, alpha, alpha).with_shadowing(shadowing);
             std::array::from_fn(|i| albedo(&surface, step(i).powi(2).max(1e-4)).clamp(1e-4, 1.0))
         });
         Self { values: Box::new(values) }
     }
 
     /// The table of a perfectly reflecting surface.
-    pub(super) fn mirror(distribution: Distribution) -> &'static Self {
-        static TABLES: [OnceLock<AlbedoTable>; 2] = [OnceLock::new(), OnceLock::new()];
-        let place = usize::from(distribution == Distribution::Beckmann);
-        TABLES[place].get_or_init(|| Self::new(distribution, mirror_albedo))
+    pub(super) fn mirror(distribution: Distribution, shadowing: Shadowing) -> &'static Self {
+        static TABLES: [OnceLock<AlbedoTable>; 4] = [const { OnceLock::new() }; 4];
+        let is_correlated = usize::from(shadowing == Shadowing::HeightCorrelated);
+        let place = 2 * usize::from(distribution == Distribution::Beckmann) + is_correlated;
+        TABLES[place].get_or_init(|| Self::new(distribution, shadowing, mirror_albedo))
     }
 
     /// The table of a dielectric boundary that light meets from its thinner or thicker side.
-    pub(super) fn boundary(distribution: Distribution, eta: f32) -> Self {
-        Self::new(distribution, |surface, cos| {
+    pub(super) fn boundary(distribution: Distribution, shadowing: Shadowing, eta: f32) -> Self {
+        Self::new(distribution, shadowing, |surface, cos| {
             reflectance(surface, cos, eta) + transmittance(surface, cos, eta)
         })
     }
 
     /// The table of what a dielectric boundary reflects of light from above.
     pub(super) fn gloss(eta: f32) -> Self {
-        Self::new(Distribution::Ggx, |surface, cos| reflectance(surface, cos, eta))
+        Self::new(Distribution::Ggx, Shadowing::Separable, |surface, cos| reflectance(surface, cos, eta))
     }
 
     /// The table's value, bilinearly.
@@ -135,7 +143,7 @@ fn mirror_albedo(surface: &Microfacet, cos: f32) -> f32 {
     let wo = direction(cos);
     average(surface, wo, |m| {
         let wi = reflect(wo, m);
-        if wi.z <= 0.0 { 0.0 } else { surface.g1(wi, m) }
+        if wi.z <= 0.0 { 0.0 } else { surface.g_given_visible(wo, wi, m) }
     })
 }
 
@@ -146,7 +154,7 @@ mod tests {
     #[test]
     fn smooth_surfaces_lose_nothing_and_rough_ones_much() {
         for distribution in [Distribution::Ggx, Distribution::Beckmann] {
-            let table = AlbedoTable::mirror(distribution);
+            let table = AlbedoTable::mirror(distribution, Shadowing::Separable);
             let at = |alpha, cos| table.at(&Microfacet::new(distribution, alpha, alpha), cos);
             assert!(at(0.01, 0.5) > 0.98, "{}", at(0.01, 0.5));
             assert!((0.3..0.8).contains(&at(1.0, 0.5)), "{}", at(1.0, 0.5));
@@ -155,7 +163,7 @@ mod tests {
 
     #[test]
     fn a_boundary_reflects_and_passes_what_it_does_not_lose() {
-        let table = AlbedoTable::boundary(Distribution::Ggx, 1.5);
+        let table = AlbedoTable::boundary(Distribution::Ggx, Shadowing::Separable, 1.5);
         assert!(table.at(&Microfacet::new(Distribution::Ggx, 0.05, 0.05), 0.8) > 0.99);
         assert!(table.at(&Microfacet::new(Distribution::Ggx, 1.0, 1.0), 0.8) < 0.97);
     }

@@ -58,17 +58,21 @@ pub struct LobeFlags {
     pub delta: bool,
     /// Through the surface.
     pub transmission: bool,
+    /// Straight on, as if there were no surface: no scattering at all.
+    pub null: bool,
 }
 
 impl LobeFlags {
     /// Non-delta reflection.
-    pub const REFLECTION: Self = Self { delta: false, transmission: false };
+    pub const REFLECTION: Self = Self { delta: false, transmission: false, null: false };
     /// Non-delta transmission.
-    pub const TRANSMISSION: Self = Self { delta: false, transmission: true };
+    pub const TRANSMISSION: Self = Self { delta: false, transmission: true, null: false };
     /// A mirror.
-    pub const DELTA_REFLECTION: Self = Self { delta: true, transmission: false };
+    pub const DELTA_REFLECTION: Self = Self { delta: true, transmission: false, null: false };
     /// A window.
-    pub const DELTA_TRANSMISSION: Self = Self { delta: true, transmission: true };
+    pub const DELTA_TRANSMISSION: Self = Self { delta: true, transmission: true, null: false };
+    /// A surface that is not there.
+    pub const NULL: Self = Self { delta: true, transmission: true, null: true };
 }
 
 /// A direction drawn from a lobe.

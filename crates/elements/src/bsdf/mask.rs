@@ -9,7 +9,9 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Arena, Id};
 use aureole_spectrum::Spectrum;
 
-use super::{Bsdf, EmissionContext, Material, MaterialContext, MaterialOps, NullLobe, nested_material};
+use super::{
+    Bsdf, EmissionContext, Material, MaterialContext, MaterialOps, NullLobe, has_holes, nested_material,
+};
 use crate::{Element, Resolver, Texture, float_texture};
 
 /// A cut-out.
@@ -48,6 +50,10 @@ impl MaterialOps for Mask {
 
     fn shines(&self, materials: &Arena<Material>) -> bool {
         materials[self.material].shines(materials)
+    }
+
+    fn is_see_through(&self, materials: &Arena<Material>, textures: &Arena<Texture>) -> bool {
+        has_holes(self.opacity, textures) || materials[self.material].is_see_through(materials, textures)
     }
 
     fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {

@@ -3,6 +3,7 @@
 //! # References
 //! - [Walter et al. 2007] "Microfacet Models for Refraction through Rough Surfaces", EGSR.
 //! - [Heitz 2018] "Sampling the GGX Distribution of Visible Normals", JCGT 7(4).
+//! - [Heitz 2014] "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2): both joint forms.
 //! - [Jakob 2014] "An Improved Visible Normal Sampling Routine for the Beckmann Distribution".
 
 use std::f32::consts::PI;
@@ -21,6 +22,16 @@ pub enum Distribution {
     Beckmann,
 }
 
+/// How likely a facet is seen from both directions at once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shadowing {
+    /// Seen from one or from the other, independently: too dark at grazing angles.
+    #[default]
+    Separable,
+    /// What lies high is likely to be seen from both [Heitz 2014, equation 99].
+    HeightCorrelated,
+}
+
 /// A rough surface: a distribution and its widths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Microfacet {
@@ -30,15 +41,23 @@ pub struct Microfacet {
     pub alpha_u: f32,
     /// The same along local Y.
     pub alpha_v: f32,
+    /// How shadowing and masking go together.
+    pub shadowing: Shadowing,
 }
 
 /// The smallest roughness: smoother surfaces would lose their digits.
 const MIN_ALPHA: f32 = 1e-4;
 
 impl Microfacet {
-    /// A rough surface.
+    /// A rough surface, with separable shadowing.
     pub fn new(distribution: Distribution, alpha_u: f32, alpha_v: f32) -> Self {
-        Self { distribution, alpha_u: alpha_u.max(MIN_ALPHA), alpha_v: alpha_v.max(MIN_ALPHA) }
+        let [alpha_u, alpha_v] = [alpha_u, alpha_v].map(|alpha| alpha.max(MIN_ALPHA));
+        Self { distribution, alpha_u, alpha_v, shadowing: Shadowing::Separable }
+    }
+
+    /// The same surface with that shadowing.
+    pub fn with_shadowing(self, shadowing: Shadowing) -> Self {
+        Self { shadowing, ..self }
     }
 
     /// The density of facets with unit normal `m`, per steradian and unit area.
@@ -80,10 +99,25 @@ impl Microfacet {
         }
     }
 
-    /// Shadowing of both directions, taken as independent.
+    /// Shadowing of both directions.
     #[inline]
     pub fn g(&self, wo: Vector3, wi: Vector3, m: Vector3) -> f32 {
-        self.g1(wo, m) * self.g1(wi, m)
+        let (a, b) = (self.g1(wo, m), self.g1(wi, m));
+        match self.shadowing {
+            Shadowing::Separable => a * b,
+            // 1 / (1 + Λ(wo) + Λ(wi)), where G1 = 1 / (1 + Λ).
+            Shadowing::HeightCorrelated if a * b > 0.0 => a * b / (a + b - a * b),
+            Shadowing::HeightCorrelated => 0.0,
+        }
+    }
+
+    /// The share of light to `wi` that gets past the facets from one around `m` that is seen from `wo`.
+    #[inline]
+    pub(super) fn g_given_visible(&self, wo: Vector3, wi: Vector3, m: Vector3) -> f32 {
+        match self.shadowing {
+            Shadowing::Separable => self.g1(wi, m),
+            Shadowing::HeightCorrelated => self.g(wo, wi, m) / self.g1(wo, m).max(f32::MIN_POSITIVE),
+        }
     }
 
     /// The density of normals visible from `wo` (with `wo.z > 0`), per steradian of `m`.
@@ -226,16 +260,23 @@ fn erf_inv(x: f32) -> f32 {
 pub struct Roughness {
     /// The slope distribution.
     pub(super) distribution: Distribution,
+    pub(super) shadowing: Shadowing,
     alpha_u: Id<Texture>,
     alpha_v: Id<Texture>,
 }
 
 /// Documentation of those parameters.
-pub const ROUGHNESS_PARAMS: [ParamDoc; 4] = [
+pub const ROUGHNESS_PARAMS: [ParamDoc; 5] = [
     ParamDoc { name: "distribution", ty: "string", default: "beckmann", doc: "`beckmann` or `ggx`" },
     ParamDoc { name: "alpha", ty: "texture", default: "0.1", doc: "roughness in both directions, in (0, 1]" },
     ParamDoc { name: "alpha_u", ty: "texture", default: "alpha", doc: "roughness along the tangent" },
     ParamDoc { name: "alpha_v", ty: "texture", default: "alpha", doc: "roughness across it" },
+    ParamDoc {
+        name: "shadowing",
+        ty: "string",
+        default: "separable",
+        doc: "of light and of sight: `separable` or `height_correlated`",
+    },
 ];
 
 /// Documentation of the switch of energy compensation.
@@ -261,13 +302,18 @@ impl Roughness {
         let mut one =
             |name| if params.has(name) { float_texture(params, resolver, name, 0.1) } else { Ok(both) };
         let (alpha_u, alpha_v) = (one("alpha_u")?, one("alpha_v")?);
-        Ok(Self { distribution: distribution(params)?, alpha_u, alpha_v })
+        let shadowing = params.one_of(
+            "shadowing",
+            &[("separable", Shadowing::Separable), ("height_correlated", Shadowing::HeightCorrelated)],
+        )?;
+        Ok(Self { distribution: distribution(params)?, shadowing, alpha_u, alpha_v })
     }
 
     /// The rough surface at a point.
     #[inline]
     pub fn at(&self, at: &TextureContext<'_>) -> Microfacet {
         Microfacet::new(self.distribution, at.float(self.alpha_u), at.float(self.alpha_v))
+            .with_shadowing(self.shadowing)
     }
 }
 
@@ -296,7 +342,8 @@ impl Finish {
     #[inline]
     pub(super) fn at(&self, at: &TextureContext<'_>) -> Option<Microfacet> {
         let [u, v] = [self.alpha_u, self.alpha_v].map(|alpha| at.float(alpha));
-        (u.max(v) >= 1e-3).then(|| Microfacet::new(Distribution::Ggx, u, v))
+        (u.max(v) >= 1e-3)
+            .then(|| Microfacet::new(Distribution::Ggx, u, v).with_shadowing(Shadowing::HeightCorrelated))
     }
 }
 

@@ -38,6 +38,7 @@ mod plastic;
 mod principled;
 mod principled_thin;
 mod prism;
+mod regularize;
 mod rough_conductor;
 mod rough_dielectric;
 mod rough_diffuse;
@@ -56,7 +57,7 @@ use aureole_desc::{NodeId, Params, SceneError, Span};
 use aureole_math::{Arena, Frame, Id, Vector3};
 use aureole_spectrum::Spectrum;
 
-use crate::{Resolver, TextureContext};
+use crate::{Resolver, Texture, TextureContext};
 
 pub use baek_plastic::{BaekPlastic, BaekPlasticLobe};
 pub use blend::Blend;
@@ -132,6 +133,11 @@ pub trait MaterialOps: Debug + Send + Sync {
         false
     }
 
+    /// Whether light may pass straight on, as if there were no surface: see [`Bsdf::null_transmittance`].
+    fn is_see_through(&self, _materials: &Arena<Material>, _textures: &Arena<Texture>) -> bool {
+        false
+    }
+
     /// Radiance that it sends out by itself.
     fn emitted(&self, _at: &EmissionContext<'_>) -> Spectrum {
         Spectrum::ZERO
@@ -183,6 +189,11 @@ impl Material {
         each_material!(self, m => m.shines(materials))
     }
 
+    /// Whether light may pass straight on, as if there were no surface.
+    pub fn is_see_through(&self, materials: &Arena<Material>, textures: &Arena<Texture>) -> bool {
+        each_material!(self, m => m.is_see_through(materials, textures))
+    }
+
     /// Radiance that it sends out by itself.
     pub fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {
         each_material!(self, m => m.emitted(at))
@@ -210,6 +221,11 @@ pub(crate) fn optional_material(
 ) -> Result<Option<Id<Material>>, SceneError> {
     let node: Option<NodeId> = params.try_node(name)?;
     node.map(|node| resolver.material(node)).transpose()
+}
+
+/// Whether an opacity leaves holes anywhere.
+pub(crate) fn has_holes(opacity: Id<Texture>, textures: &Arena<Texture>) -> bool {
+    !textures[opacity].is_constant() || textures[opacity].mean(textures)[0] < 1.0
 }
 
 fn missing(name: &str, element: &str) -> SceneError {

@@ -56,6 +56,10 @@ impl MaterialOps for NormalMap {
         materials[self.bend.material].shines(materials)
     }
 
+    fn is_see_through(&self, materials: &Arena<Material>, textures: &Arena<Texture>) -> bool {
+        materials[self.bend.material].is_see_through(materials, textures)
+    }
+
     fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {
         at.nested(self.bend.material)
     }

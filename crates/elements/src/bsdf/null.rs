@@ -6,10 +6,10 @@
 //! | `scale` | float | 1 | another factor, in [0, 1] |
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::{Id, Point2, Vector3};
+use aureole_math::{Arena, Id, Point2, Vector3};
 use aureole_spectrum::{Spectrum, SpectrumRole};
 
-use super::{Bsdf, LobeFlags, LobeOps, LobeSample, MaterialContext, MaterialOps, TransportMode};
+use super::{Bsdf, LobeFlags, LobeOps, LobeSample, Material, MaterialContext, MaterialOps, TransportMode};
 use crate::{Element, Resolver, Texture, spectrum_texture};
 
 /// No surface, or a filter.
@@ -38,6 +38,10 @@ impl Element for Null {
 }
 
 impl MaterialOps for Null {
+    fn is_see_through(&self, _: &Arena<Material>, _: &Arena<Texture>) -> bool {
+        true
+    }
+
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
         let lobe = NullLobe { transmittance: at.texture.spectrum(self.transmittance) * self.scale };
         out.push(lobe, weight, at.frame, at.frame.n);
@@ -66,7 +70,7 @@ impl LobeOps for NullLobe {
             wi: -wo,
             value: self.transmittance / wo.z.abs(),
             pdf_omega: 1.0,
-            flags: LobeFlags::DELTA_TRANSMISSION,
+            flags: LobeFlags::NULL,
             eta: 1.0,
         })
     }

@@ -230,7 +230,7 @@ impl PrincipledLobe {
     #[inline]
     fn clearcoat(&self, wo: Vector3, wi: Vector3, m: Vector3) -> f32 {
         let f = schlick(Spectrum::splat(0.04), wo.dot(m), self.eta)[0];
-        let shadowing = Microfacet { distribution: Distribution::Ggx, alpha_u: 0.25, alpha_v: 0.25 };
+        let shadowing = Microfacet::new(Distribution::Ggx, 0.25, 0.25);
         0.25 * self.clearcoat * f * Gtr1::of_gloss(self.clearcoat_gloss).d(m) * shadowing.g(wo, wi, m)
     }
 

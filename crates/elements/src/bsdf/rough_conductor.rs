@@ -1,6 +1,6 @@
 //! `rough_conductor`: a rough metal, by microfacets.
 //!
-//! Parameters: those of `conductor`; `distribution`, `alpha`, `alpha_u`, `alpha_v`; and
+//! Parameters: those of `conductor`; `distribution`, `alpha`, `alpha_u`, `alpha_v`, `shadowing`; and
 //!
 //! | parameter | type | default | meaning |
 //! |---|---|---|---|
@@ -32,8 +32,8 @@ impl Element for RoughConductor {
     const SUMMARY: &'static str = "A rough metal.";
     const PARAMS: &'static [ParamDoc] = &{
         let [a, b, c, d, e, f, g, h] = METAL_PARAMS;
-        let [i, j, k, l] = ROUGHNESS_PARAMS;
-        [a, b, c, d, e, f, g, h, i, j, k, l, COMPENSATION_PARAM]
+        let [i, j, k, l, m] = ROUGHNESS_PARAMS;
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, COMPENSATION_PARAM]
     };
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -56,7 +56,7 @@ impl MaterialOps for RoughConductor {
 
 /// A metal tinted so that it returns what met several facets: seen from one side, light loses some of it at each.
 pub(super) fn compensated(metal: Metal, surface: &Microfacet, cos: f32) -> Metal {
-    let once = AlbedoTable::mirror(surface.distribution).at(surface, cos);
+    let once = AlbedoTable::mirror(surface.distribution, surface.shadowing).at(surface, cos);
     let gain = metal.reflectance(1.0) * ((1.0 - once) / once) + 1.0;
     Metal { tint: metal.tint * gain, ..metal }
 }

@@ -1,6 +1,6 @@
 //! `rough_dielectric`: frosted glass, by microfacets.
 //!
-//! Parameters: those of `dielectric`; `distribution`, `alpha`, `alpha_u`, `alpha_v`; and
+//! Parameters: those of `dielectric`; `distribution`, `alpha`, `alpha_u`, `alpha_v`, `shadowing`; and
 //!
 //! | parameter | type | default | meaning |
 //! |---|---|---|---|
@@ -35,14 +35,14 @@ impl Element for RoughDielectric {
     const PARAMS: &'static [ParamDoc] = &{
         let [a, b, c, d] = BOUNDARY_PARAMS;
         let [e, f] = FILM_PARAMS;
-        let [g, h, i, j] = ROUGHNESS_PARAMS;
-        [a, b, c, d, e, f, g, h, i, j, COMPENSATION_PARAM]
+        let [g, h, i, j, k] = ROUGHNESS_PARAMS;
+        [a, b, c, d, e, f, g, h, i, j, k, COMPENSATION_PARAM]
     };
 
     fn from_params(params: &mut Params, resolver: &mut dyn Resolver) -> Result<Self, SceneError> {
         let boundary = Boundary::from_params(params, resolver)?;
         let roughness = Roughness::from_params(params, resolver)?;
-        let table = |eta| AlbedoTable::boundary(roughness.distribution, eta);
+        let table = |eta| AlbedoTable::boundary(roughness.distribution, roughness.shadowing, eta);
         let is_compensated = params.bool("energy_compensation", false)?;
         let once = is_compensated.then(|| [table(boundary.eta), table(1.0 / boundary.eta)]);
         Ok(Self { boundary, film: FilmTexture::from_params(params, resolver)?, roughness, once })

@@ -61,7 +61,7 @@ impl Element for RoughPlastic {
     const SUMMARY: &'static str = "A matte base under a rough dielectric coat.";
     const PARAMS: &'static [ParamDoc] = &{
         let [a, b, c, d, e] = PLASTIC_PARAMS;
-        let [f, _, _, _] = microfacet::ROUGHNESS_PARAMS;
+        let [f, ..] = microfacet::ROUGHNESS_PARAMS;
         [
             a,
             b,

@@ -14,7 +14,7 @@ use std::f32::consts::PI;
 use std::sync::OnceLock;
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::{Id, Point2, Vector3, warp};
+use aureole_math::{Arena, Id, Point2, Vector3, warp};
 use aureole_spectrum::{Spectrum, SpectrumRole};
 
 use super::{
@@ -55,6 +55,10 @@ impl MaterialOps for Sheen {
             let taken = lobe.albedo(at.frame.to_local(at.wo)).max_element();
             at.nested(below, weight * (1.0 - taken).max(0.0), out);
         }
+    }
+
+    fn is_see_through(&self, materials: &Arena<Material>, textures: &Arena<Texture>) -> bool {
+        self.below.is_some_and(|below| materials[below].is_see_through(materials, textures))
     }
 }
 

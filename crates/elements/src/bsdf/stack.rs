@@ -1,13 +1,9 @@
 //! A BSDF at a point: a few weighted lobes, each in its shading frame.
 
-use arrayvec::ArrayVec;
 use aureole_math::{Frame, Point2, Vector3};
 use aureole_spectrum::Spectrum;
 
-use super::{Interior, Lobe, LobeFlags, LobeOps, TransportMode};
-
-/// How many lobes a BSDF may have; blends deeper than that lose their last ones.
-const MAX_LOBES: usize = 8;
+use super::{DiffuseLobe, Interior, Lobe, LobeFlags, LobeOps, TransportMode};
 
 /// A lobe with its share of the whole and its place.
 #[derive(Clone, Debug)]
@@ -20,16 +16,17 @@ struct Placed {
     /// Squared roughness of the facets that a bent normal stands for; zero where nothing is softened.
     bump_alpha2: f32,
     /// What light meets that goes through it: a place in the list of interiors.
-    interior: Option<u8>,
+    interior: Option<u32>,
     /// Whether its Dirac counts as a density of one beside the other lobes of a blend.
     counts_dirac: bool,
 }
 
-/// The scattering at a point of a surface, in world space. The weights of its lobes sum to at most one.
+/// The scattering at a point of a surface, in world space. The weights of its lobes sum to at most one. How many there are
+/// is bounded by what a scene's compiler lets materials refer to; who uses a BSDF again spares its memory.
 #[derive(Clone, Debug, Default)]
 pub struct Bsdf {
-    lobes: ArrayVec<Placed, MAX_LOBES>,
-    interiors: ArrayVec<Interior, MAX_LOBES>,
+    lobes: Vec<Placed>,
+    interiors: Vec<Interior>,
 }
 
 /// A direction drawn from a BSDF.
@@ -46,7 +43,7 @@ pub struct BsdfSample {
     /// Relative index of refraction along the path.
     pub eta: f32,
     /// The interior behind the lobe, if the direction goes through it: see [`Bsdf::interior`].
-    pub interior: Option<u8>,
+    pub interior: Option<u32>,
 }
 
 impl BsdfSample {
@@ -107,7 +104,7 @@ impl Bsdf {
     /// Adds a lobe in a frame; `base_normal` is the shading normal before it was bent.
     #[inline]
     pub fn push(&mut self, lobe: impl Into<Lobe>, weight: f32, frame: Frame, base_normal: Vector3) {
-        if weight > 0.0 && !self.lobes.is_full() {
+        if weight > 0.0 {
             let lobe = lobe.into();
             self.lobes.push(Placed {
                 lobe,
@@ -134,7 +131,7 @@ impl Bsdf {
         let before = self.lobes.len();
         self.push(lobe, weight, frame, base_normal);
         if self.lobes.len() > before {
-            self.lobes[before].interior = Some(self.interiors.len() as u8);
+            self.lobes[before].interior = Some(self.interiors.len() as u32);
             self.interiors.push(interior);
         }
     }
@@ -147,8 +144,8 @@ impl Bsdf {
 
     /// The interior that a sample names.
     #[inline]
-    pub fn interior(&self, index: u8) -> Interior {
-        self.interiors[usize::from(index)]
+    pub fn interior(&self, index: u32) -> Interior {
+        self.interiors[index as usize]
     }
 
     /// Lets the sides of all lobes from the `first` on be judged by the normal before it was bent, and their terminator
@@ -218,6 +215,41 @@ impl Bsdf {
     #[inline]
     pub fn is_smooth(&self) -> bool {
         self.lobes.iter().any(|placed| !placed.lobe.is_delta())
+    }
+
+    /// How much light goes straight on, as if there were no surface.
+    pub fn null_transmittance(&self) -> Spectrum {
+        let share = |placed: &Placed| match &placed.lobe {
+            Lobe::Null(lobe) => lobe.transmittance * placed.weight,
+            _ => Spectrum::ZERO,
+        };
+        self.lobes.iter().map(share).sum()
+    }
+
+    /// Roughens mirrors and windows, and what is nearly so: see [`Lobe::regularized`].
+    pub fn regularize(&mut self) {
+        for placed in &mut self.lobes {
+            placed.lobe = placed.lobe.regularized();
+        }
+    }
+
+    /// Turns each lobe into a matte one that scatters as much of the light to `wo`, estimated with these numbers. What is not
+    /// there stays so.
+    pub fn make_diffuse(&mut self, wo: Vector3, uc: f32, u: Point2) {
+        for placed in &mut self.lobes {
+            let local = placed.frame.to_local(wo);
+            if matches!(placed.lobe, Lobe::Null(_)) {
+                continue;
+            }
+            let drawn = placed.lobe.sample(local, uc, u, TransportMode::Radiance);
+            let reflectance = drawn.map_or(Spectrum::ZERO, |d| d.value * (d.wi.z.abs() / d.pdf_omega));
+            placed.lobe = DiffuseLobe { reflectance }.into();
+            placed.interior = None;
+            if local.z < 0.0 {
+                (placed.frame, placed.base_normal) = (placed.frame.flipped(), -placed.base_normal);
+            }
+        }
+        self.interiors.clear();
     }
 
     /// Whether values and densities are estimates by a random walk.

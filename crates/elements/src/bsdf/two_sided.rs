@@ -12,7 +12,7 @@ use aureole_spectrum::Spectrum;
 use super::{
     Bsdf, EmissionContext, Material, MaterialContext, MaterialOps, nested_material, optional_material,
 };
-use crate::{Element, Resolver};
+use crate::{Element, Resolver, Texture};
 
 /// A material for both sides.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +47,10 @@ impl MaterialOps for TwoSided {
 
     fn shines(&self, materials: &Arena<Material>) -> bool {
         [self.front, self.back].into_iter().any(|material| materials[material].shines(materials))
+    }
+
+    fn is_see_through(&self, materials: &Arena<Material>, textures: &Arena<Texture>) -> bool {
+        [self.front, self.back].into_iter().any(|side| materials[side].is_see_through(materials, textures))
     }
 
     fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {

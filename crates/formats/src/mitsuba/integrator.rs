@@ -48,6 +48,10 @@ pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), S
     if kind.is_empty() {
         return wrapper(t, scope);
     }
+    if kind == "path" && !plugin.contains("volpath") {
+        // There surfaces that are not there are vertices like all others, and hide lights of no size.
+        scope.default("see_through", Value::Bool(false));
+    }
     match plugin {
         "volpath" | "volpathmis" | "prbvolpath" if tree.has(Tag::Medium) => {
             let message =

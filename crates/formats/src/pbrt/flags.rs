@@ -10,7 +10,7 @@ use super::state::Reader;
 const WITHOUT_EFFECT: [&str; 5] =
     ["msereferenceimage", "msereferenceout", "pixelstats", "rendercoordsys", "wavefront"];
 /// Options that would change the picture or its noise.
-const IGNORED: [&str; 4] = ["disablepixeljitter", "disablewavelengthjitter", "forcediffuse", "seed"];
+const IGNORED: [&str; 3] = ["disablepixeljitter", "disablewavelengthjitter", "seed"];
 
 impl Reader<'_, '_> {
     pub(super) fn option(&mut self, lexer: &mut Lexer<'_>, at: Span) -> Result<(), SceneError> {
@@ -24,6 +24,7 @@ impl Reader<'_, '_> {
         let name: String =
             name.chars().filter(|c| !matches!(c, '-' | '_')).map(|c| c.to_ascii_lowercase()).collect();
         match name.as_str() {
+            "forcediffuse" => self.flags.force_diffuse = boolean(&value, at)?,
             "disabletexturefiltering" => self.flags.no_texture_filter = boolean(&value, at)?,
             "displacementedgescale" => {
                 let scale = number(&value, at)?;
@@ -40,7 +41,7 @@ impl Reader<'_, '_> {
                 }
             }
             _ => {
-                let own = ["disabletexturefiltering", "displacementedgescale"];
+                let own = ["disabletexturefiltering", "displacementedgescale", "forcediffuse"];
                 let known = own.iter().chain(&WITHOUT_EFFECT).chain(&IGNORED);
                 let known = known.map(|name| (*name).to_owned()).collect();
                 return Err(SceneError::UnknownName { what: "option", name, known, at });

@@ -159,6 +159,7 @@ impl Reader<'_, '_> {
 
     fn rough(params: &mut Params, [u, v]: [Value; 2], at: aureole_desc::Span) {
         params.push("distribution", Value::String("ggx".into()), at);
+        params.push("shadowing", Value::String("height_correlated".into()), at);
         params.push("alpha_u", u, at);
         params.push("alpha_v", v, at);
     }

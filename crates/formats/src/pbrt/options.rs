@@ -308,8 +308,14 @@ impl Reader<'_, '_> {
         } else {
             // pbrt counts bounces, Aureole segments.
             params.push("max_depth", Value::Int(given.int("maxdepth", 5)?.clamp(0, 1 << 30) + 1), at);
+            if given.bool("regularize", false)? {
+                params.push("regularize", Value::Bool(kind.contains("path")), given.at("regularize"));
+            }
+            if self.flags.force_diffuse {
+                params.push("force_diffuse", Value::Bool(true), at);
+            }
         }
-        for ignored in ["regularize", "lightsampler", "samplelights", "samplebsdf"] {
+        for ignored in ["lightsampler", "samplelights", "samplebsdf"] {
             given.get(ignored);
         }
         given.finish("Integrator", self.context.report);

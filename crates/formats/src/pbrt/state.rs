@@ -79,11 +79,13 @@ pub(super) struct Flags {
     pub edge_scale: f64,
     /// Pictures are read at their full size only.
     pub no_texture_filter: bool,
+    /// Every surface is matte.
+    pub force_diffuse: bool,
 }
 
 impl Default for Flags {
     fn default() -> Self {
-        Self { edge_scale: 1.0, no_texture_filter: false }
+        Self { edge_scale: 1.0, no_texture_filter: false, force_diffuse: false }
     }
 }
 

@@ -1,9 +1,10 @@
 //! `ao`: how much of the sky each point of the first surface sees.
 
 use aureole_desc::ParamDoc;
-use aureole_math::{Frame, warp};
+use aureole_elements::SurfacePoint;
+use aureole_math::{Frame, Ray, warp};
 use aureole_scene::Scene;
-use aureole_spectrum::Spectrum;
+use aureole_spectrum::{Spectrum, Wavelengths};
 
 use super::{FIRST_FREE_DIMENSION, IntegratorManual, OneByOne, PathStart, RayIntegrator};
 
@@ -36,11 +37,26 @@ struct AmbientOcclusion {
     cos_sample: bool,
 }
 
+/// The first surface on a camera ray that does not let all light pass straight on.
+fn first_surface(scene: &Scene, mut ray: Ray, rays: &mut u64) -> Option<SurfacePoint> {
+    /// As many surfaces that are not there are enough.
+    const MOST: u32 = 1 << 12;
+    for _ in 0..MOST {
+        *rays += 1;
+        let at = scene.interaction(&ray, &scene.closest_hit(&ray)?);
+        if !scene.is_see_through()
+            || scene.bsdf(&at, -ray.direction, Wavelengths::RGB).null_transmittance() != Spectrum::ONE
+        {
+            return Some(at.surface);
+        }
+        ray = at.surface.spawn_ray(ray.direction, ray.time);
+    }
+    None
+}
+
 impl RayIntegrator for AmbientOcclusion {
     fn radiance(&self, scene: &Scene, start: &PathStart, rays: &mut u64) -> Spectrum {
-        *rays += 1;
-        let Some(hit) = scene.closest_hit(&start.ray) else { return Spectrum::ZERO };
-        let surface = scene.interaction(&start.ray, &hit).surface;
+        let Some(surface) = first_surface(scene, start.ray, rays) else { return Spectrum::ZERO };
         let n = surface.frame.n.face_forward(-start.ray.direction);
         let u = scene.sampler.get_2d(start.key, FIRST_FREE_DIMENSION);
         let (w, weight) = if self.cos_sample {

@@ -40,6 +40,24 @@ pub(super) const MANUAL: IntegratorManual = IntegratorManual {
             default: "false",
             doc: "lights are not seen by the camera itself",
         },
+        ParamDoc {
+            name: "see_through",
+            ty: "bool",
+            default: "true",
+            doc: "surfaces that light passes straight on through are no segments' ends, and let light samples pass",
+        },
+        ParamDoc {
+            name: "regularize",
+            ty: "bool",
+            default: "false",
+            doc: "roughen mirrors and windows behind the first bounce that was none's",
+        },
+        ParamDoc {
+            name: "force_diffuse",
+            ty: "bool",
+            default: "false",
+            doc: "every surface is matte, and scatters as much light as it would otherwise",
+        },
     ],
     build: |params| Ok(Box::new(Path::from_params(params)?)),
 };
@@ -48,6 +66,9 @@ struct Path {
     max_depth: u32,
     rr_depth: u32,
     hide_emitters: bool,
+    see_through: bool,
+    regularize: bool,
+    force_diffuse: bool,
 }
 
 /// A path between two surfaces.
@@ -64,6 +85,10 @@ struct Segment {
     path: u32,
     /// Segments before this one; all those inside a body that scatters are one.
     depth: u32,
+    /// Surfaces before this one that drew random numbers.
+    vertex: u32,
+    /// Whether some bounce was neither a mirror's nor a window's.
+    is_diffused: bool,
     /// Whether nothing but surfaces that let it pass straight through came before: what it finds is seen directly.
     is_direct: bool,
     place: Place,
@@ -106,6 +131,9 @@ impl Path {
             max_depth: max_depth(params)?,
             rr_depth: params.int_in("rr_depth", 5, 0, i64::from(u32::MAX))? as u32,
             hide_emitters: params.bool("hide_emitters", false)?,
+            see_through: params.bool("see_through", true)?,
+            regularize: params.bool("regularize", false)?,
+            force_diffuse: params.bool("force_diffuse", false)?,
         })
     }
 
@@ -154,7 +182,7 @@ impl Path {
                 *found += contribution;
             }
         }
-        if segment.depth + 1 < self.max_depth {
+        if segment.depth + 1 < self.max_depth || self.sees_through(scene) {
             self.scatter(scene, &starts[segment.path as usize], state, &ray, segment, &at, watch);
         }
     }
@@ -169,7 +197,7 @@ impl Path {
     ) {
         let (ray, segment) = (state.rays[i], state.segments[i]);
         let interior = state.interiors[segment.path as usize];
-        let mut rng = walk::numbers_of(start.key, segment.depth, events);
+        let mut rng = walk::numbers_of(start.key, segment.vertex, events);
         let next = walk::scatter(&interior, &ray, segment.throughput, (segment.eta, events), &mut rng);
         let Some((onward, throughput)) = next else {
             watch.hear(|| Event::Absorb);
@@ -195,24 +223,32 @@ impl Path {
     ) {
         let wo = -ray.direction;
         let depth = segment.depth;
+        let is_last = depth + 1 >= self.max_depth;
         // In a body that scatters the path has far more vertices than the sampler has dimensions.
         let walked = match segment.place {
             Place::Inside { events } if state.interiors[segment.path as usize].scatters() => Some(events),
             _ => None,
         };
         let mut numbers = match walked {
-            Some(events) => Numbers::Walk(walk::numbers_of(start.key, depth, events)),
+            Some(events) => Numbers::Walk(walk::numbers_of(start.key, segment.vertex, events)),
             None => Numbers::Sampler {
                 sampler: &scene.sampler,
                 key: start.key,
-                dimension: FIRST_FREE_DIMENSION + depth * PER_BOUNCE,
+                dimension: FIRST_FREE_DIMENSION + segment.vertex * PER_BOUNCE,
             },
         };
         let bsdf = &mut state.bsdf;
         scene.bsdf_into(at, wo, Wavelengths::RGB, bsdf);
+        if self.force_diffuse {
+            // Numbers that nothing else draws: no walk is so long.
+            let mut rng = walk::numbers_of(start.key, segment.vertex, 1 << 31);
+            bsdf.make_diffuse(wo, rng.next_f32(), rng.point2());
+        } else if self.regularize && segment.is_diffused {
+            bsdf.regularize();
+        }
         let has_interior = bsdf.has_interior();
         let sees_open = |wi| walk::sees_open(segment.place, has_interior, at, wo, wi);
-        if bsdf.is_smooth() {
+        if bsdf.is_smooth() && !is_last {
             let numbers = LightNumbers {
                 // Numbers that decide nothing are not drawn.
                 choice: if scene.picker.has_choice() { numbers.one(LIGHT_CHOICE) } else { 0.0 },
@@ -241,6 +277,12 @@ impl Path {
             is_delta: drawn.flags.delta,
             is_transmission: drawn.flags.transmission,
         });
+        if drawn.flags.null && self.see_through {
+            return Self::pass(state, start, &segment, &drawn, at.surface.spawn_ray(drawn.wi, ray.time));
+        }
+        if is_last {
+            return;
+        }
         let mut next = Segment {
             throughput: segment.throughput * drawn.weight,
             reference: at.surface.p,
@@ -252,6 +294,8 @@ impl Path {
             eta: segment.eta * drawn.eta,
             path: segment.path,
             depth: depth + 1,
+            vertex: segment.vertex + 1,
+            is_diffused: segment.is_diffused || !drawn.flags.delta,
             is_direct: segment.is_direct && drawn.is_straight(),
             place: Self::place_after(state, &segment, &drawn, drawn.wi.dot(at.surface.frame.n) < 0.0),
         };
@@ -260,7 +304,7 @@ impl Path {
         }
         let is_walking = walked.is_some() && next.place != Place::Outside;
         if is_walking {
-            next.depth = depth;
+            (next.depth, next.vertex) = (depth, segment.vertex);
         }
         if is_walking || depth + 1 >= self.rr_depth {
             // Refraction squeezes radiance, but a path that will leave the glass again is not weaker for it.
@@ -272,17 +316,37 @@ impl Path {
             }
             next.throughput = next.throughput / survival;
         }
+        let direction = if next.place == Place::Outside { drawn.wi } else { walk::kept_inside(at, drawn.wi) };
+        Self::launch(state, start, next, at.surface.spawn_ray(direction, ray.time));
+    }
+
+    /// Sends a path on its way, in a body until the end of its free flight.
+    fn launch(state: &mut PathState, start: &PathStart, next: Segment, onward: Ray) {
         state.next_rays.push(match next.place {
-            Place::Outside => at.surface.spawn_ray(drawn.wi, ray.time),
+            Place::Outside => onward,
             Place::Inside { events } => {
-                let onward = at.surface.spawn_ray(walk::kept_inside(at, drawn.wi), ray.time);
-                let interior = &state.interiors[segment.path as usize];
+                let interior = &state.interiors[next.path as usize];
                 // Numbers that no vertex draws: they lie beyond the events of any walk.
-                let mut rng = walk::numbers_of(start.key, next.depth, !events);
+                let mut rng = walk::numbers_of(start.key, next.vertex, !events);
                 walk::flight(onward, interior, next.throughput, &mut rng)
             }
         });
         state.next_segments.push(next);
+    }
+
+    /// Whether some surfaces may count as if they were not there.
+    fn sees_through(&self, scene: &Scene) -> bool {
+        self.see_through && scene.is_see_through()
+    }
+
+    /// Lets a path go straight on: what it finds is still weighed against the light samples of the last surface.
+    fn pass(state: &mut PathState, start: &PathStart, segment: &Segment, drawn: &BsdfSample, onward: Ray) {
+        // More surfaces than this count as opaque, so that no path goes on for ever.
+        const MOST: u32 = 1 << 12;
+        let (throughput, vertex) = (segment.throughput * drawn.weight, segment.vertex + 1);
+        if vertex < segment.depth.saturating_add(MOST) {
+            Self::launch(state, start, Segment { throughput, vertex, ..*segment }, onward);
+        }
     }
 
     /// Where a path is after it was scattered at a surface.
@@ -316,6 +380,8 @@ impl PathState {
                 eta: 1.0,
                 path: i as u32,
                 depth: 0,
+                vertex: 0,
+                is_diffused: false,
                 is_direct: true,
                 place: Place::Outside,
             });
@@ -323,15 +389,24 @@ impl PathState {
     }
 
     /// Traces the shadow rays and adds what arrives.
-    fn light<W: Watch>(&mut self, scene: &Scene, radiance: &mut [Spectrum], watch: &mut W) {
+    fn light<W: Watch>(
+        &mut self,
+        scene: &Scene,
+        sees_through: bool,
+        radiance: &mut [Spectrum],
+        watch: &mut W,
+    ) {
         self.blocked.clear();
         self.blocked.resize(self.shadow_rays.len(), false);
         scene.occluded_many(&self.shadow_rays, &mut self.blocked);
-        for (pending, &blocked) in self.pending.iter().zip(&self.blocked) {
-            watch.hear(|| Event::Shadow { blocked });
-            if !blocked {
-                radiance[pending.path as usize] += pending.contribution;
-            }
+        for ((pending, ray), &blocked) in self.pending.iter().zip(&self.shadow_rays).zip(&self.blocked) {
+            let passed = match (blocked, sees_through) {
+                (false, _) => Spectrum::ONE,
+                (true, false) => Spectrum::ZERO,
+                (true, true) => scene.transmittance(ray, Wavelengths::RGB),
+            };
+            watch.hear(|| Event::Shadow { blocked: passed.is_black() });
+            radiance[pending.path as usize] += pending.contribution * passed;
         }
         self.shadow_rays.clear();
         self.pending.clear();
@@ -359,7 +434,7 @@ impl Path {
                 self.shade(scene, starts, radiance, state, i, watch);
             }
             batch.rays += state.shadow_rays.len() as u64;
-            state.light(scene, radiance, watch);
+            state.light(scene, self.sees_through(scene), radiance, watch);
             std::mem::swap(&mut state.rays, &mut state.next_rays);
             std::mem::swap(&mut state.segments, &mut state.next_segments);
             state.next_rays.clear();

@@ -116,7 +116,7 @@ impl Tree<'_> {
         match sample_light(self.scene, at, bsdf, -ray.direction, numbers, Weighting::Alone, ray.time) {
             Some(light) => {
                 *self.rays += 1;
-                if self.scene.occluded(&light.ray) { Spectrum::ZERO } else { light.contribution }
+                light.contribution * self.scene.visibility(&light.ray, Wavelengths::RGB)
             }
             None => Spectrum::ZERO,
         }

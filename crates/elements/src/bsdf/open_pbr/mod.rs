@@ -57,7 +57,7 @@ use aureole_spectrum::{Spectrum, SpectrumRole, SpectrumSource};
 
 use super::directional::AlbedoTable;
 use super::half_space::Albedos;
-use super::{Bsdf, EmissionContext, Material, MaterialContext, MaterialOps};
+use super::{Bsdf, EmissionContext, Material, MaterialContext, MaterialOps, has_holes};
 use crate::{Element, Resolver, Texture, TextureContext, float_texture, spectrum_texture};
 
 use bearing::Bearing;
@@ -292,6 +292,10 @@ impl MaterialOps for OpenPbr {
 
     fn shines(&self, _: &Arena<Material>) -> bool {
         self.shines
+    }
+
+    fn is_see_through(&self, _: &Arena<Material>, textures: &Arena<Texture>) -> bool {
+        has_holes(self.opacity, textures)
     }
 
     fn emitted(&self, at: &EmissionContext<'_>) -> Spectrum {
