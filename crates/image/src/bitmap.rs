@@ -249,6 +249,38 @@ impl Bitmap {
         [r, g, b]
     }
 
+    /// One channel by itself as a grey picture; alpha is read as colours are then, by their encoding.
+    ///
+    /// # Panics
+    /// Where there is no such channel.
+    pub fn plane(&self, channel: usize) -> Self {
+        assert!(channel < self.channels, "a picture of {} channels has no channel {channel}", self.channels);
+        fn pick<T: Copy>(data: &[T], channel: usize, channels: usize) -> Vec<T> {
+            data.iter().skip(channel).step_by(channels).copied().collect()
+        }
+        let n = self.channels;
+        self.grey(match &self.store {
+            Store::Bytes { data, table } => {
+                Store::Bytes { data: pick(data, channel, n), table: table.clone() }
+            }
+            Store::Words { data, table } => {
+                Store::Words { data: pick(data, channel, n), table: table.clone() }
+            }
+            Store::Halves(data) => Store::Halves(pick(data, channel, n)),
+            Store::Floats(data) => Store::Floats(pick(data, channel, n)),
+        })
+    }
+
+    /// A number of each texel's red, green, blue and alpha as a grey picture.
+    pub fn map_to_grey(&self, number: impl Fn([f32; 4]) -> f32) -> Self {
+        let places = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+        self.grey(Store::Floats(places.map(|(x, y)| number(self.texel(x, y))).collect()))
+    }
+
+    fn grey(&self, store: Store) -> Self {
+        Self { channels: 1, store, pyramid: OnceLock::new(), ..*self }
+    }
+
     /// The opacity of a texel; one without an alpha channel.
     #[inline]
     pub fn alpha(&self, x: usize, y: usize) -> f32 {

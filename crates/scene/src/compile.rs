@@ -431,6 +431,9 @@ impl Compiler<'_> {
             }
             Object::Instance(_) => false,
         });
+        let follows_normals = materials
+            .iter()
+            .any(|(_, material)| matches!(material, Material::Bump(bump) if bump.follows_normals()));
         // Many samples a pixel do part of the filtering themselves, as in pbrt.
         let is_filtered = self.resolve.textures.iter().any(|(_, texture)| texture.is_filtered());
         let samples = sampler.sample_count().max(1) as f32;
@@ -456,6 +459,7 @@ impl Compiler<'_> {
             unbounded: self.unbounded,
             has_alpha,
             is_see_through,
+            follows_normals,
             footprint_scale,
         };
         let counts = scene.counts();

@@ -75,6 +75,8 @@ pub struct Scene {
     pub(crate) unbounded: Vec<Object>,
     pub(crate) has_alpha: bool,
     pub(crate) is_see_through: bool,
+    /// Whether some material asks how shading normals change.
+    pub(crate) follows_normals: bool,
     /// By how much footprints are narrower than a pixel; zero where no texture is filtered.
     pub(crate) footprint_scale: f32,
     /// What was built from which nodes.
@@ -213,19 +215,11 @@ impl Scene {
     /// The nearer of a hit and those with shapes that have no box.
     fn with_unbounded(&self, ray: &Ray, mut best: Option<Hit>) -> Option<Hit> {
         for (i, object) in self.unbounded.iter().enumerate() {
-            let Object::Solid { shape, .. } = object else { continue };
             let nearer = ray.until(best.map_or(ray.t_max, |hit| hit.t));
-            let Some(hit) = self.shapes[*shape].intersect(&nearer, 0) else { continue };
-            if self.is_there(object, &hit, ray) {
+            if let Some(hit) = self.first_there::<true>(object, 0, &nearer) {
                 let (geometry, primitive) = (UNBOUNDED, i as u32);
-                best = Some(Hit {
-                    t: hit.t,
-                    u: hit.uv[0],
-                    v: hit.uv[1],
-                    primitive,
-                    geometry,
-                    instance: NO_INSTANCE,
-                });
+                let [u, v] = hit.uv;
+                best = Some(Hit { t: hit.t, u, v, primitive, geometry, instance: NO_INSTANCE });
             }
         }
         best
@@ -288,7 +282,11 @@ impl Scene {
             unreachable!("instances hold no hits of their own")
         };
         let shape = &self.shapes[*shape];
-        Interaction { surface: shape.surface(ray, &hit), light: *light, material: *material, shape, hit }
+        let mut surface = shape.surface(ray, &hit);
+        if self.follows_normals {
+            surface.dn_duv = shape.normal_change(&surface, &hit);
+        }
+        Interaction { surface, light: *light, material: *material, shape, hit }
     }
 
     /// The scattering at a place, seen along unit `wo`.
@@ -319,6 +317,8 @@ impl Scene {
             ng: surface.ng,
             dp_du: surface.dp_du,
             dp_dv: surface.dp_dv,
+            dn_duv: surface.dn_duv,
+            has_vertex_normals: surface.has_vertex_normals,
             wo,
         };
         bsdf.clear();

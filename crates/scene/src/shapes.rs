@@ -17,8 +17,8 @@ impl<const ALPHA: bool> UserShapes for Lookup<'_, ALPHA> {
     #[inline]
     fn intersect(&self, level: u32, geometry: u32, primitive: u32, ray: &Ray) -> Option<UserHit> {
         match &self.0.levels[level as usize][geometry as usize] {
-            Object::Solid { shape, .. } => {
-                let hit = self.0.shapes[*shape].intersect(ray, primitive)?;
+            object @ Object::Solid { .. } => {
+                let hit = self.0.first_there::<ALPHA>(object, primitive, ray)?;
                 Some(UserHit { t: hit.t, u: hit.uv[0], v: hit.uv[1] })
             }
             Object::Instance(_) => None,
@@ -33,6 +33,29 @@ impl<const ALPHA: bool> UserShapes for Lookup<'_, ALPHA> {
 }
 
 impl Scene {
+    /// The nearest hit with a primitive that is not cut out there: behind a hole in a sphere is its other side.
+    #[inline]
+    pub(crate) fn first_there<const ALPHA: bool>(
+        &self,
+        object: &Object,
+        primitive: u32,
+        ray: &Ray,
+    ) -> Option<ShapeHit> {
+        /// More often than a ray meets most primitives.
+        const MOST: u32 = 16;
+        let Object::Solid { shape, .. } = object else { return None };
+        let mut rest = *ray;
+        for _ in 0..MOST {
+            let hit = self.shapes[*shape].intersect(&rest, primitive)?;
+            if !ALPHA || self.is_there(object, &hit, ray) {
+                return Some(hit);
+            }
+            // Shapes find their hits in double precision.
+            rest.t_min = hit.t * (1.0 + 2.0 * f32::EPSILON);
+        }
+        None
+    }
+
     /// Whether a cut-out surface is there at a hit: by chance, but by the same chance for the same ray.
     pub(crate) fn is_there(&self, object: &Object, hit: &ShapeHit, ray: &Ray) -> bool {
         let Object::Solid { shape, alpha: Some(alpha), .. } = object else { return true };

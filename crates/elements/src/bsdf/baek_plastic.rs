@@ -57,8 +57,8 @@ impl Element for BaekPlastic {
 impl MaterialOps for BaekPlastic {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
         let lobe = BaekPlasticLobe {
-            diffuse: at.texture.spectrum(self.diffuse),
-            specular: at.texture.spectrum(self.specular),
+            diffuse: at.texture.albedo(self.diffuse),
+            specular: at.texture.albedo(self.specular),
             eta: self.eta,
             surface: self.roughness.at(&at.texture),
         };

@@ -7,8 +7,14 @@ use super::{Bsdf, Material, MaterialContext, nested_material};
 use crate::Resolver;
 
 /// Documentation of the parameters of materials that bend normals.
-pub(super) const BEND_PARAMS: [ParamDoc; 3] = [
+pub(super) const BEND_PARAMS: [ParamDoc; 4] = [
     ParamDoc { name: "bsdf", ty: "bsdf", default: "", doc: "the material" },
+    ParamDoc {
+        name: "keep_sides",
+        ty: "bool",
+        default: "true",
+        doc: "no light where the bent normal and the true one take it to be on different sides",
+    },
     ParamDoc {
         name: "flip_invalid_normals",
         ty: "bool",
@@ -19,7 +25,7 @@ pub(super) const BEND_PARAMS: [ParamDoc; 3] = [
         name: "soften_terminator",
         ty: "bool",
         default: "true",
-        doc: "fade light towards the true surface's horizon",
+        doc: "fade light towards the true surface's horizon; with `keep_sides`",
     },
 ];
 
@@ -27,6 +33,7 @@ pub(super) const BEND_PARAMS: [ParamDoc; 3] = [
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bend {
     pub(super) material: Id<Material>,
+    keep_sides: bool,
     flip_invalid_normals: bool,
     soften_terminator: bool,
 }
@@ -40,6 +47,7 @@ impl Bend {
     ) -> Result<Self, SceneError> {
         Ok(Self {
             material: nested_material(params, resolver, "bsdf", element)?,
+            keep_sides: params.bool("keep_sides", true)?,
             flip_invalid_normals: params.bool("flip_invalid_normals", true)?,
             soften_terminator: params.bool("soften_terminator", true)?,
         })
@@ -48,11 +56,14 @@ impl Bend {
     /// Evaluates the material as if the shading normal were `bent`.
     pub(super) fn evaluate(&self, bent: Vector3, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
         let n = at.frame.n;
+        let bent = if self.keep_sides { bent } else { bent.face_forward(at.ng) };
         let bent = if self.flip_invalid_normals { towards_viewer(bent, at) } else { bent };
         let first = out.len();
         let frame = Frame::from_normal_and_tangent(bent, at.dp_du);
         MaterialContext { frame, ..*at }.nested(self.material, weight, out);
-        out.rebase(first, n, self.soften_terminator);
+        if self.keep_sides {
+            out.rebase(first, n, self.soften_terminator);
+        }
     }
 }
 

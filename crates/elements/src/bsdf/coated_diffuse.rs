@@ -82,7 +82,7 @@ impl Coating {
             base: base(self.eta),
             thickness: at.float(self.thickness).max(f32::MIN_POSITIVE),
             g: at.float(self.g).clamp(-0.99, 0.99),
-            albedo: at.spectrum(self.albedo).clamp(0.0, 1.0),
+            albedo: at.albedo(self.albedo),
             max_depth: self.max_depth,
             sample_count: self.sample_count,
         }
@@ -114,7 +114,7 @@ impl Element for CoatedDiffuse {
 
 impl MaterialOps for CoatedDiffuse {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
-        let albedo = at.texture.spectrum(self.reflectance).clamp(0.0, 1.0);
+        let albedo = at.texture.albedo(self.reflectance);
         let lobe = self.coating.at(&at.texture, |_| Base::Matte(albedo));
         out.push(lobe, weight, at.frame, at.frame.n);
     }

@@ -109,7 +109,7 @@ impl Metallic {
             Color::Reflectance(r) => Response::Index([Spectrum::ONE, absorption(at.spectrum(r))]),
         };
         let film = self.film.and_then(|film| film.at(at));
-        Metal { response, tint: at.spectrum(self.tint), film }.below(self.ext_eta)
+        Metal { response, tint: at.albedo(self.tint), film }.below(self.ext_eta)
     }
 }
 

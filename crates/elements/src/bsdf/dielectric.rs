@@ -81,8 +81,8 @@ impl Boundary {
     pub(super) fn at(&self, at: &TextureContext<'_>) -> Glass {
         Glass {
             eta: self.eta,
-            reflectance: at.spectrum(self.reflectance),
-            transmittance: at.spectrum(self.transmittance),
+            reflectance: at.albedo(self.reflectance),
+            transmittance: at.albedo(self.transmittance),
             film: None,
         }
     }

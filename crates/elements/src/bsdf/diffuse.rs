@@ -40,7 +40,7 @@ impl MaterialOps for Diffuse {
     #[inline]
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
         out.push(
-            DiffuseLobe { reflectance: at.texture.spectrum(self.reflectance) },
+            DiffuseLobe { reflectance: at.texture.albedo(self.reflectance) },
             weight,
             at.frame,
             at.frame.n,

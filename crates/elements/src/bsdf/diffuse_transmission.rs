@@ -37,8 +37,8 @@ impl Element for DiffuseTransmission {
 impl MaterialOps for DiffuseTransmission {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
         let lobe = DiffuseTransmissionLobe {
-            reflectance: at.texture.spectrum(self.reflectance),
-            transmittance: at.texture.spectrum(self.transmittance),
+            reflectance: at.texture.albedo(self.reflectance),
+            transmittance: at.texture.albedo(self.transmittance),
         };
         out.push(lobe, weight, at.frame, at.frame.n);
     }

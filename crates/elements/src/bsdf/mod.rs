@@ -112,6 +112,10 @@ pub struct MaterialContext<'a> {
     pub dp_du: Vector3,
     /// Derivative of position by v.
     pub dp_dv: Vector3,
+    /// Derivatives of the shading normal by u and v, for [`Bump::follows_normals`].
+    pub dn_duv: [Vector3; 2],
+    /// Whether the shading normal is interpolated between those of vertices.
+    pub has_vertex_normals: bool,
     /// Unit direction to the viewer, in the world.
     pub wo: Vector3,
 }

@@ -4,6 +4,7 @@
 //! |---|---|---|---|
 //! | `texture` | texture | | normal in the shading frame, each coordinate mapped from [-1, 1] to [0, 1]; raw data |
 //! | `bsdf` | bsdf | | the material |
+//! | `keep_sides` | bool | true | no light where the bent normal and the true one take it to be on different sides |
 //! | `flip_invalid_normals` | bool | true | mirror a bent normal that the viewer could only see from behind |
 //! | `soften_terminator` | bool | true | fade light towards the true surface's horizon |
 
@@ -25,7 +26,7 @@ pub struct NormalMap {
 impl Element for NormalMap {
     const SUMMARY: &'static str = "Takes the shading normal from a picture.";
     const PARAMS: &'static [ParamDoc] = &{
-        let [a, b, c] = BEND_PARAMS;
+        let [a, b, c, d] = BEND_PARAMS;
         [
             ParamDoc {
                 name: "texture",
@@ -36,6 +37,7 @@ impl Element for NormalMap {
             a,
             b,
             c,
+            d,
         ]
     };
 

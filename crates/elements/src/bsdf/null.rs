@@ -43,7 +43,7 @@ impl MaterialOps for Null {
     }
 
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
-        let lobe = NullLobe { transmittance: at.texture.spectrum(self.transmittance) * self.scale };
+        let lobe = NullLobe { transmittance: at.texture.albedo(self.transmittance) * self.scale };
         out.push(lobe, weight, at.frame, at.frame.n);
     }
 }

@@ -57,11 +57,11 @@ impl Coated {
     /// Colours at a point; `internal` is the coat's mean reflectance from below.
     #[inline]
     pub(super) fn at(&self, at: &TextureContext<'_>, internal: f32) -> Coat {
-        let diffuse = at.spectrum(self.diffuse);
+        let diffuse = at.albedo(self.diffuse);
         let lost = if self.nonlinear { diffuse * internal } else { Spectrum::splat(internal) };
         Coat {
             base: diffuse / (Spectrum::ONE - lost) / (self.eta * self.eta),
-            specular: at.spectrum(self.specular),
+            specular: at.albedo(self.specular),
             eta: self.eta,
             diffuse_mean: diffuse.average(),
         }

@@ -121,7 +121,7 @@ impl MaterialOps for Principled {
         let (metallic, spec_trans) = (share(self.metallic), share(self.spec_trans));
         let lobe = PrincipledLobe {
             matte: Matte {
-                color: texture.spectrum(self.base_color),
+                color: texture.albedo(self.base_color),
                 roughness,
                 flatness: share(self.flatness),
                 sheen: texture.float(self.sheen),

@@ -94,7 +94,7 @@ impl MaterialOps for PrincipledThin {
         let blur = ((0.65 * eta - 0.35) * roughness).max(0.0);
         let lobe = PrincipledThinLobe {
             matte: Matte {
-                color: texture.spectrum(self.base_color),
+                color: texture.albedo(self.base_color),
                 roughness,
                 flatness: share(self.flatness),
                 sheen: texture.float(self.sheen),

@@ -43,7 +43,7 @@ impl Element for RoughDiffuse {
 impl MaterialOps for RoughDiffuse {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
         let lobe = RoughDiffuseLobe {
-            reflectance: at.texture.spectrum(self.reflectance).clamp(0.0, 1.0),
+            reflectance: at.texture.albedo(self.reflectance),
             roughness: at.texture.float(self.roughness).clamp(0.0, 1.0),
         };
         out.push(lobe, weight, at.frame, at.frame.n);

@@ -48,7 +48,7 @@ impl Element for Sheen {
 
 impl MaterialOps for Sheen {
     fn evaluate(&self, at: &MaterialContext<'_>, weight: f32, out: &mut Bsdf) {
-        let color = at.texture.spectrum(self.color).clamp(0.0, 1.0);
+        let color = at.texture.albedo(self.color);
         let lobe = SheenLobe::new(color, at.texture.float(self.roughness));
         out.push(lobe, weight, at.frame, at.frame.n);
         if let Some(below) = self.below {

@@ -111,6 +111,12 @@ impl ShapeOps for Cylinder {
         SurfacePoint::new(p, error, self.space.normal(n), uv, du, vector(Vector3::Z))
     }
 
+    fn normal_change(&self, at: &SurfacePoint, _: &ShapeHit) -> [Vector3; 2] {
+        let across = |v: Vector3| Vector3::new(v.x, v.y, 0.0);
+        let n = across(self.space.local(at.p).to_vector()).normalized();
+        [at.dp_du, at.dp_dv].map(|dp| self.space.normal_change(n, dp, across))
+    }
+
     fn area(&self) -> f32 {
         self.area
     }

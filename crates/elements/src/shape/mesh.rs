@@ -13,7 +13,9 @@ use std::sync::Arc;
 
 use aureole_desc::{Attribute, Mesh, ParamDoc, Params, SceneError, Span};
 use aureole_math::warp::SphericalTriangle;
-use aureole_math::{Bounds3, Discrete, Frame, Normal3, Point2, Point3, Ray, Transform, Vector3, gamma, warp};
+use aureole_math::{
+    Bounds3, Discrete, Frame, Normal3, Point2, Point3, Ray, Transform, Vector2, Vector3, gamma, warp,
+};
 
 use super::refine::Refinement;
 use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
@@ -219,20 +221,22 @@ impl TriangleMesh {
         let (dp02, dp12) = (p0 - p2, p1 - p2);
         if !self.uvs.is_empty() {
             let [t0, t1, t2] = self.triangle_uvs(primitive);
-            let (d02, d12) = (t0 - t2, t1 - t2);
-            let determinant = d02.x * d12.y - d02.y * d12.x;
-            if determinant != 0.0 {
-                let inv = 1.0 / determinant;
-                let dp_du = (dp02 * d12.y - dp12 * d02.y) * inv;
-                let dp_dv = (dp12 * d02.x - dp02 * d12.x) * inv;
-                if dp_du.is_finite() && dp_dv.is_finite() && dp_du.cross(dp_dv).length_squared() > 0.0 {
-                    return [dp_du, dp_dv];
-                }
+            let found = by_uv([dp02, dp12], [t0 - t2, t1 - t2]);
+            if let Some([dp_du, dp_dv]) = found.filter(|[du, dv]| du.cross(*dv).length_squared() > 0.0) {
+                return [dp_du, dp_dv];
             }
         }
         let frame = Frame::from_normal(ng);
         [frame.s, frame.t]
     }
+}
+
+/// Derivatives by u and v of what is linear over a triangle, from its differences to the third vertex and those of u and v.
+#[inline]
+fn by_uv([x02, x12]: [Vector3; 2], [t02, t12]: [Vector2; 2]) -> Option<[Vector3; 2]> {
+    let inv = 1.0 / (t02.x * t12.y - t02.y * t12.x);
+    let by = [(x02 * t12.y - x12 * t02.y) * inv, (x12 * t02.x - x02 * t12.x) * inv];
+    (by[0].is_finite() && by[1].is_finite()).then_some(by)
 }
 
 impl Element for TriangleMesh {
@@ -305,7 +309,20 @@ impl ShapeOps for TriangleMesh {
         }
         let [dp_du, dp_dv] = self.derivatives(primitive, ng);
         let frame = Frame::from_normal_and_tangent(ns, dp_du);
-        SurfacePoint { p, error, ng, frame, uv, dp_du, dp_dv, primitive: hit.primitive }
+        let (dn_duv, has_vertex_normals) = ([Vector3::ZERO; 2], !self.normals.is_empty());
+        let primitive = hit.primitive;
+        SurfacePoint { p, error, ng, frame, uv, dp_du, dp_dv, dn_duv, has_vertex_normals, primitive }
+    }
+
+    /// The derivatives of the interpolated normal, as it is before it is made a unit vector [PBRT4, section 6.5.3].
+    fn normal_change(&self, _: &SurfacePoint, hit: &ShapeHit) -> [Vector3; 2] {
+        if self.normals.is_empty() {
+            return [Vector3::ZERO; 2];
+        }
+        let primitive = hit.primitive as usize;
+        let [n0, n1, n2] = self.indices[primitive].map(|i| Vector3::from(self.normals[i as usize]));
+        let [t0, t1, t2] = self.triangle_uvs(primitive);
+        by_uv([n0 - n2, n1 - n2], [t0 - t2, t1 - t2]).unwrap_or([Vector3::ZERO; 2])
     }
 
     fn area(&self) -> f32 {
@@ -357,6 +374,9 @@ macro_rules! delegate_to_mesh {
             }
             fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
                 self.0.surface(ray, hit)
+            }
+            fn normal_change(&self, at: &SurfacePoint, hit: &ShapeHit) -> [Vector3; 2] {
+                self.0.normal_change(at, hit)
             }
             fn area(&self) -> f32 {
                 self.0.area()

@@ -84,6 +84,11 @@ pub trait ShapeOps: Debug + Send + Sync {
     /// Everything about the surface at a hit, in level space.
     fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint;
 
+    /// Derivatives of the shading normal by u and v at a point of the surface; zero where they are not known.
+    fn normal_change(&self, _at: &SurfacePoint, _hit: &ShapeHit) -> [Vector3; 2] {
+        [Vector3::ZERO; 2]
+    }
+
     /// Surface area; infinite where it is not known. Only shapes of known area can shine.
     fn area(&self) -> f32 {
         f32::INFINITY
@@ -157,6 +162,11 @@ impl Shape {
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
         each_shape!(self, s => s.surface(ray, hit))
+    }
+
+    /// Derivatives of the shading normal by u and v at a point of the surface; zero where they are not known.
+    pub fn normal_change(&self, at: &SurfacePoint, hit: &ShapeHit) -> [Vector3; 2] {
+        each_shape!(self, s => s.normal_change(at, hit))
     }
 
     /// Surface area.

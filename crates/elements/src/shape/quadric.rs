@@ -2,6 +2,8 @@
 
 use aureole_math::{Normal3, Point3, Ray, Transform, Vector3, gamma};
 
+use super::surface::normal_change;
+
 /// A shape's own space and the way to its level's.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ObjectSpace {
@@ -49,6 +51,13 @@ impl ObjectSpace {
     /// The outward unit normal in the world of an object normal.
     pub(super) fn normal(&self, n: Vector3) -> Vector3 {
         Vector3::from(self.world_from_object.normal(n.into())).normalized() * self.orientation
+    }
+
+    /// How the unit normal changes along the world's `dp`, where the unit object normal `n` changes as `dn` of that way in
+    /// object space.
+    pub(super) fn normal_change(&self, n: Vector3, dp: Vector3, dn: impl Fn(Vector3) -> Vector3) -> Vector3 {
+        let dn = dn(self.object_from_world.vector(dp));
+        normal_change(&self.world_from_object, n, dn) * self.orientation
     }
 
     /// World position of an object point and the bound on its error.

@@ -190,6 +190,11 @@ impl ShapeOps for Sphere {
         )
     }
 
+    fn normal_change(&self, at: &SurfacePoint, _: &ShapeHit) -> [Vector3; 2] {
+        let n = self.space.local(at.p).to_vector().normalized();
+        [at.dp_du, at.dp_dv].map(|dp| self.space.normal_change(n, dp, |v| v))
+    }
+
     fn area(&self) -> f32 {
         self.area
     }

@@ -19,8 +19,19 @@ pub struct SurfacePoint {
     pub dp_du: Vector3,
     /// Derivative of position by v.
     pub dp_dv: Vector3,
+    /// Derivatives of the shading normal by u and v; zero unless a material asks, and where they are not known.
+    pub dn_duv: [Vector3; 2],
+    /// Whether the shading normal is interpolated between those of vertices.
+    pub has_vertex_normals: bool,
     /// The triangle, patch or part of the shape.
     pub primitive: u32,
+}
+
+/// How the unit normal changes in another space where the unit normal `n` changes by `dn`.
+pub(super) fn normal_change(transform: &Transform, n: Vector3, dn: Vector3) -> Vector3 {
+    let [turned, change] = [n, dn].map(|v| Vector3::from(transform.normal(v.into())));
+    let unit = turned.normalized();
+    (change - unit * unit.dot(change)) / turned.length()
 }
 
 impl SurfacePoint {
@@ -34,6 +45,8 @@ impl SurfacePoint {
             uv,
             dp_du,
             dp_dv,
+            dn_duv: [Vector3::ZERO; 2],
+            has_vertex_normals: false,
             primitive: 0,
         }
     }
@@ -55,7 +68,12 @@ impl SurfacePoint {
         let (p, error) = place(transform, self.p, self.error);
         let (dp_du, dp_dv) = (transform.vector(self.dp_du), transform.vector(self.dp_dv));
         let frame = Frame::from_normal_and_tangent(normal(self.frame.n), dp_du);
-        Self { p, error, ng: normal(self.ng), frame, dp_du, dp_dv, ..*self }
+        let dn_duv = if self.dn_duv == [Vector3::ZERO; 2] {
+            self.dn_duv
+        } else {
+            self.dn_duv.map(|dn| normal_change(transform, self.frame.n, dn))
+        };
+        Self { p, error, ng: normal(self.ng), frame, dp_du, dp_dv, dn_duv, ..*self }
     }
 }
 

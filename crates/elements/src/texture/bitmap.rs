@@ -8,7 +8,7 @@
 //! | `wrap` | string | repeat | beyond the unit square: `repeat`, `mirror`, `clamp`, `black` |
 //! | `encoding` | string | auto | `auto` (by file type), `srgb`, `linear` (raw data), `gamma` |
 //! | `gamma` | float | 2.2 | for `encoding` = `gamma` |
-//! | `channel` | string | color | what is read: `color`, `alpha`, or `number`: alpha where the picture has holes, else the channels' mean |
+//! | `channel` | string | color | what is read: `color`; `alpha`; the `first` of the colours; their `mean`; or a `number`: alpha, by the encoding of colours, where the picture has holes, else the mean |
 //! | `mapping` | string | uv | from the surface (`uv`) or from where it is: `spherical`, `cylindrical`, `planar` |
 //! | `texture_from_world` | transform | identity | into the texture's space, for the latter |
 //! | `to_uv` | transform | identity | applied to the mapped coordinates |
@@ -43,19 +43,33 @@ enum Filter {
     Ewa,
 }
 
+/// What is read of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Channel {
     Color,
     Alpha,
+    First,
     Mean,
+    Number,
 }
 
 impl Channel {
-    /// What makes a number of a picture, as pbrt reads it: its holes, or all its colours alike.
-    fn number(bitmap: &Bitmap) -> Self {
-        let mut places = (0..bitmap.height()).flat_map(|y| (0..bitmap.width()).map(move |x| (x, y)));
-        let has_holes = bitmap.has_alpha() && places.any(|(x, y)| bitmap.alpha(x, y) != 1.0);
-        if has_holes { Self::Alpha } else { Self::Mean }
+    /// The part of a picture that it is.
+    fn of(self, bitmap: Arc<Bitmap>) -> Arc<Bitmap> {
+        let has_holes = || {
+            let mut places = (0..bitmap.height()).flat_map(|y| (0..bitmap.width()).map(move |x| (x, y)));
+            bitmap.has_alpha() && places.any(|(x, y)| bitmap.alpha(x, y) != 1.0)
+        };
+        match self {
+            Self::Color => bitmap,
+            Self::Alpha => Arc::new(bitmap.map_to_grey(|texel| texel[3])),
+            Self::Number if has_holes() => Arc::new(bitmap.plane(bitmap.channels() - 1)),
+            Self::First | Self::Mean | Self::Number if bitmap.channels() == 1 => bitmap,
+            Self::First => Arc::new(bitmap.plane(0)),
+            Self::Mean | Self::Number => {
+                Arc::new(bitmap.map_to_grey(|[r, g, b, _]| (r + g + b) * (1.0 / 3.0)))
+            }
+        }
     }
 }
 
@@ -66,7 +80,6 @@ pub struct BitmapTexture {
     filter: Filter,
     max_anisotropy: f32,
     wrap: Wrap,
-    channel: Channel,
     mapping: Mapping,
     scale: f32,
     invert: bool,
@@ -81,14 +94,7 @@ impl BitmapTexture {
     #[inline]
     fn texel_of(&self, b: &Bitmap, x: i64, y: i64) -> [f32; 3] {
         match (self.wrap.index(x, b.width() as i64), self.wrap.index(y, b.height() as i64)) {
-            (Some(x), Some(y)) => match self.channel {
-                Channel::Color => b.rgb(x, y),
-                Channel::Alpha => [b.alpha(x, y); 3],
-                Channel::Mean => {
-                    let [r, g, b] = b.rgb(x, y);
-                    [(r + g + b) * (1.0 / 3.0); 3]
-                }
-            },
+            (Some(x), Some(y)) => b.rgb(x, y),
             _ => [0.0; 3],
         }
     }
@@ -246,7 +252,7 @@ impl Element for BitmapTexture {
             name: "channel",
             ty: "string",
             default: "color",
-            doc: "`color`, `alpha`, or `number`: alpha where the picture has holes, else the channels' mean",
+            doc: "`color`, `alpha`, `first`, `mean`, or `number`: alpha where the picture has holes, else the mean",
         },
         MAPPING,
         TEXTURE_FROM_WORLD,
@@ -276,11 +282,16 @@ impl Element for BitmapTexture {
         let bitmap = resolver.bitmap(&path, encoding, at)?;
         let channel = params.one_of(
             "channel",
-            &[("color", Some(Channel::Color)), ("alpha", Some(Channel::Alpha)), ("number", None)],
+            &[
+                ("color", Channel::Color),
+                ("alpha", Channel::Alpha),
+                ("first", Channel::First),
+                ("mean", Channel::Mean),
+                ("number", Channel::Number),
+            ],
         )?;
         Ok(Self {
-            channel: channel.unwrap_or_else(|| Channel::number(&bitmap)),
-            bitmap,
+            bitmap: channel.of(bitmap),
             filter: params.one_of(
                 "filter",
                 &[
@@ -378,7 +389,6 @@ mod tests {
             filter,
             max_anisotropy: 8.0,
             wrap: Wrap::Repeat,
-            channel: Channel::Color,
             mapping: Mapping::default(),
             scale: 1.0,
             invert: false,
@@ -444,10 +454,8 @@ mod tests {
         let number = |bytes: Vec<u8>, channels: usize, invert: bool| {
             let bitmap = Bitmap::from_bytes(1, 1, channels, bytes, Encoding::Linear)
                 .expect("is as long as it must be");
-            let channel = Channel::number(&bitmap);
             let texture = BitmapTexture {
-                bitmap: Arc::new(bitmap),
-                channel,
+                bitmap: Channel::Number.of(Arc::new(bitmap)),
                 scale: 0.5,
                 invert,
                 ..checker(Filter::Bilinear)
@@ -461,6 +469,21 @@ mod tests {
         assert!(near(number(vec![0, 0, 0, 204], 4, false), 0.4));
         // The scale comes first.
         assert!(near(number(vec![255, 0, 51], 3, true), 0.8));
+    }
+
+    /// What is read of a picture is decoded as its colours are, but for `alpha`, which is what it says.
+    #[test]
+    fn channels_are_read_by_their_encoding() {
+        let byte = 188; // sRGB's one half
+        let picture = Bitmap::from_bytes(1, 1, 4, vec![byte, 255, 0, byte], Encoding::Srgb);
+        let picture = Arc::new(picture.expect("is as long as it must be"));
+        let read = |channel: Channel| channel.of(picture.clone()).rgb(0, 0);
+        let near = |a: [f32; 3], b: f32| a.iter().all(|a| (a - b).abs() < 4e-3);
+        assert!(near(read(Channel::Alpha), 188.0 / 255.0));
+        assert!(near(read(Channel::Number), 0.503));
+        assert!(near(read(Channel::First), 0.503));
+        assert!(near(read(Channel::Mean), 0.501));
+        assert!((read(Channel::Color)[1] - 1.0).abs() < 1e-6);
     }
 
     #[test]

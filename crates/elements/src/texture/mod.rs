@@ -90,6 +90,12 @@ impl<'a> TextureContext<'a> {
         self.textures[texture].eval(self)
     }
 
+    /// The value of a texture that is a share of light: none, all, or something in between.
+    #[inline]
+    pub fn albedo(&self, texture: Id<Texture>) -> Spectrum {
+        self.spectrum(texture).clamp(0.0, 1.0)
+    }
+
     /// The value of a texture of numbers here: the first lane.
     #[inline]
     pub fn float(&self, texture: Id<Texture>) -> f32 {

@@ -35,6 +35,8 @@ fn bsdf_at(world: &World, material: Id<Material>, frame: Frame, wo: Vector3) -> 
         ng: frame.n,
         dp_du: frame.s,
         dp_dv: frame.t,
+        dn_duv: [Vector3::ZERO; 2],
+        has_vertex_normals: false,
         wo,
     };
     let mut bsdf = Bsdf::new();

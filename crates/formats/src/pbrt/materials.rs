@@ -80,11 +80,12 @@ impl Reader<'_, '_> {
             }
         };
         let mut id = self.add(Family::Bsdf, name, params, at);
-        id = self.bumps(id, given)?;
-        given.finish(&format!("material `{kind}`"), self.context.report);
+        // Sides are those of the bent surface.
         if matches!(name, "diffuse" | "conductor" | "rough_conductor" | "measured" | "merl") {
             id = self.add(Family::Bsdf, "two_sided", Params::new().with("bsdf", Value::Node(id)), at);
         }
+        id = self.bumps(id, given)?;
+        given.finish(&format!("material `{kind}`"), self.context.report);
         Ok(id)
     }
 
@@ -111,7 +112,16 @@ impl Reader<'_, '_> {
             id = self.bent("normal_map", texture, id, at);
         }
         if let Some(Value::Node(texture)) = given.textured_float("displacement", self)? {
+            if given.get("normalmap").is_some() {
+                self.warn("`normalmap` counts, `displacement` does not", given.at("displacement"));
+                return Ok(id);
+            }
             id = self.bent("bump", texture, id, given.at("displacement"));
+            self.desc[id].params.push(
+                "tangents",
+                Value::String("displaced".into()),
+                given.at("displacement"),
+            );
         }
         Ok(id)
     }
@@ -120,7 +130,8 @@ impl Reader<'_, '_> {
         let mut params = Params::new();
         params.push("texture", Value::Node(texture), at);
         params.push("bsdf", Value::Node(material), at);
-        // pbrt has neither of Mitsuba's corrections.
+        // pbrt has none of Mitsuba's corrections.
+        params.push("keep_sides", Value::Bool(false), at);
         params.push("flip_invalid_normals", Value::Bool(false), at);
         params.push("soften_terminator", Value::Bool(false), at);
         self.add(Family::Bsdf, kind, params, at)

@@ -1,5 +1,9 @@
 //! Textures.
 
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
 use aureole_desc::{Family, Params, SceneError, Span, Value};
 use aureole_math::{Transform, Vector3};
 use aureole_spectrum::SpectrumSource;
@@ -225,7 +229,7 @@ impl Reader<'_, '_> {
         };
         params.push("filter", Value::String(filter.into()), at);
         if ty == TextureType::Float {
-            params.push("channel", Value::String("number".into()), at);
+            params.push("channel", Value::String(number_of(given, filter, self)?.into()), at);
         }
         let anisotropy = given.float("maxanisotropy", 8.0)?.clamp(1.0, 64.0);
         params.push("max_anisotropy", Value::Float(anisotropy), given.at("maxanisotropy"));
@@ -244,6 +248,28 @@ impl Reader<'_, '_> {
         self.mapping(given, Transform::IDENTITY, &mut params)?;
         Ok(params)
     }
+}
+
+/// What pbrt reads of a picture as a number: its filters differ. Opacity counts where a file has it as a fourth channel, not where
+/// palettes or grey pictures have it.
+fn number_of(given: &ParamSet, filter: &str, reader: &Reader<'_, '_>) -> Result<&'static str, SceneError> {
+    if matches!(filter, "nearest" | "ewa") {
+        return Ok("first");
+    }
+    let has_opacity = given.path("filename", reader)?.is_some_and(|path| match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("exr") => true,
+        Some(extension) if extension.eq_ignore_ascii_case("png") => is_png_with_opacity(&path),
+        _ => false,
+    });
+    Ok(if has_opacity { "number" } else { "mean" })
+}
+
+/// Whether a PNG file's header says red, green, blue and alpha.
+fn is_png_with_opacity(path: &Path) -> bool {
+    let mut header = [0; 26];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut header));
+    // Signature, length and name of the first block, width and height, depth: then the type of colour.
+    read.is_ok() && header[25] == 6
 }
 
 /// `sRGB`, `linear` or `gamma 2.2`.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use aureole_desc::{Params, SceneError};
 use aureole_math::Vector3;
-use aureole_spectrum::{SpectrumRole, SpectrumSource, Tabulated};
+use aureole_spectrum::{Tabulated, srgb_from_xyz};
 
 use super::warp::{Table, Warp};
 
@@ -107,15 +107,21 @@ fn colours(params: &mut Params) -> Result<(&'static str, Arc<[f32]>, Columns), S
         return Ok(("rgb", rgb, vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]));
     }
     let (spectra, wavelengths) = (floats(params, "spectra")?, floats(params, "wavelengths")?);
-    // The map from spectra to colours is linear: a hat over each wavelength gives its column.
-    let column = |i: usize| {
-        let mut values = vec![0.0; wavelengths.len()];
-        values[i] = 1.0;
-        let hat = Tabulated { lambda: wavelengths.to_vec(), values };
-        SpectrumSource::Tabulated(Arc::new(hat)).to_rgb(SpectrumRole::Unbounded)
-    };
-    let columns = (0..wavelengths.len()).map(column).collect();
+    let columns = (0..wavelengths.len()).map(|i| hat(&wavelengths, i)).collect();
     Ok(("spectra", spectra, columns))
+}
+
+/// What the value at one of several wavelengths adds to a colour under D65. The map from spectra to colours is linear, so a
+/// hat over the wavelength tells; it is far out of gamut, and only the sum of all is a colour. Beyond the first and the last
+/// wavelength their values go on.
+fn hat(wavelengths: &[f32], i: usize) -> [f32; 3] {
+    /// Beyond what is seen.
+    const ENDS: [f32; 2] = [1.0, 1e4];
+    let is = |end: usize| if i == end { 1.0 } else { 0.0 };
+    let last = wavelengths.len() - 1;
+    let lambda = [&ENDS[..1], wavelengths, &ENDS[1..]].concat();
+    let values = std::iter::once(is(0)).chain((0..=last).map(is)).chain([is(last)]).collect();
+    srgb_from_xyz(Tabulated { lambda, values }.to_xyz(true))
 }
 
 /// Tables of red, green and blue from tables by incidence and spectral column.
@@ -139,4 +145,35 @@ fn by_channel(
         }
         out
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is the same at all wavelengths is grey, however many there are and wherever they end.
+    #[test]
+    fn even_spectra_are_grey() {
+        for [first, last, count] in
+            [[360.0, 830.0, 4.0], [400.0, 700.0, 31.0], [398.4, 999.9, 195.0], [550.0, 551.0, 2.0]]
+        {
+            let count = count as usize;
+            let step = (last - first) / (count - 1) as f32;
+            let wavelengths: Vec<f32> = (0..count).map(|i| first + step * i as f32).collect();
+            let mut sum = [0.0_f32; 3];
+            for i in 0..count {
+                sum.iter_mut().zip(hat(&wavelengths, i)).for_each(|(sum, x)| *sum += x);
+            }
+            assert!(sum.iter().all(|x| (x - 1.0).abs() < 2e-3), "{first} to {last} by {count}: {sum:?}");
+        }
+    }
+
+    /// One wavelength alone has the colour of its light: green is more than red and blue at 530 nm, and red at 620 nm.
+    #[test]
+    fn a_hat_has_the_colour_of_its_wavelength() {
+        let wavelengths: Vec<f32> = (0..32).map(|i| 400.0 + 10.0 * i as f32).collect();
+        let [green, red] = [hat(&wavelengths, 13), hat(&wavelengths, 22)];
+        assert!(green[1] > 0.02 && green[0] < 0.0 && green[2] < green[1], "{green:?}");
+        assert!(red[0] > 0.02 && red[1] < 0.3 * red[0] && red[2] < 0.1 * red[0], "{red:?}");
+    }
 }

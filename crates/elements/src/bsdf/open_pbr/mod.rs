@@ -71,7 +71,7 @@ struct Weighted {
 
 impl Weighted {
     fn color_at(&self, at: &TextureContext<'_>) -> Spectrum {
-        at.spectrum(self.color).clamp(0.0, 1.0)
+        at.albedo(self.color)
     }
 
     fn weight_at(&self, at: &TextureContext<'_>) -> f32 {
