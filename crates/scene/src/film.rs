@@ -2,7 +2,7 @@
 
 use aureole_desc::{Limits, Node, SceneDesc, SceneError, Span};
 use aureole_elements::FilmSpec;
-use aureole_spectrum::Spectrum;
+use aureole_spectrum::{Spectrum, xyz_from_srgb};
 
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +60,8 @@ pub struct Film {
     pub gain: f32,
     /// Samples with a channel above this, after the gain, are scaled down to it; infinite for none.
     pub max_component: f32,
+    /// The same for CIE X, Y and Z.
+    pub max_xyz: f32,
 }
 
 impl Film {
@@ -74,6 +76,7 @@ impl Film {
             has_alpha: false,
             gain: 1.0,
             max_component: f32::INFINITY,
+            max_xyz: f32::INFINITY,
         }
     }
 
@@ -85,9 +88,14 @@ impl Film {
     /// A sample as the film takes it: no brighter than its limit, which counts after the gain.
     #[inline]
     pub fn limited(&self, radiance: Spectrum) -> Spectrum {
-        let [r, g, b] = radiance.rgb();
-        let brightest = r.max(g).max(b) * self.gain;
-        if brightest > self.max_component { radiance * (self.max_component / brightest) } else { radiance }
+        let most = |[a, b, c]: [f32; 3]| a.max(b).max(c) * self.gain;
+        let excess = most(radiance.rgb()) / self.max_component;
+        let excess = if self.max_xyz.is_finite() {
+            excess.max(most(xyz_from_srgb(radiance.rgb())) / self.max_xyz)
+        } else {
+            excess
+        };
+        if excess > 1.0 { radiance / excess } else { radiance }
     }
 
     /// The film of a description, without compiling it.
@@ -128,9 +136,8 @@ impl Film {
             ],
         )?;
         film.gain = params.float_in("gain", 1.0, 0.0, 1e6)?;
-        if params.has("max_component") {
-            film.max_component = params.float_in("max_component", 0.0, 0.0, f32::INFINITY)?;
-        }
+        let mut limit = |name| params.float_in(name, f32::INFINITY, 0.0, f32::INFINITY);
+        (film.max_component, film.max_xyz) = (limit("max_component")?, limit("max_xyz")?);
         film.check(limits, node.span)?;
         Ok(film)
     }

@@ -7,7 +7,8 @@ use glam::Vec4;
 
 /// Four values of a spectral quantity: R, G, B and a spare lane, or one value per hero wavelength.
 ///
-/// In RGB mode the spare lane carries no meaning and never reaches an image.
+/// In RGB mode the spare lane carries no meaning and never reaches an image. So what decides about paths, such as the largest
+/// lane, looks at the other three alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(transparent)]
 pub struct Spectrum(Vec4);
@@ -48,28 +49,28 @@ impl Spectrum {
         self.0.to_array()
     }
 
-    /// The largest lane.
+    /// The largest lane that has a meaning.
     #[inline]
     pub fn max_element(self) -> f32 {
-        self.0.max_element()
+        self.0.x.max(self.0.y).max(self.0.z)
     }
 
-    /// The mean of the lanes.
+    /// The mean of the lanes that have a meaning.
     #[inline]
     pub fn average(self) -> f32 {
-        self.0.element_sum() * 0.25
+        (self.0.x + self.0.y + self.0.z) * (1.0 / 3.0)
     }
 
-    /// Whether every lane is exactly zero.
+    /// Whether every lane that has a meaning is exactly zero.
     #[inline]
     pub fn is_black(self) -> bool {
-        self.0 == Vec4::ZERO
+        self.0.cmpeq(Vec4::ZERO).bitmask() & 0b111 == 0b111
     }
 
-    /// Whether no lane is infinite or NaN.
+    /// Whether no lane that has a meaning is infinite or NaN.
     #[inline]
     pub fn is_finite(self) -> bool {
-        self.0.is_finite()
+        self.0.is_finite_mask().bitmask() & 0b111 == 0b111
     }
 
     /// Lane-wise maximum with zero.
@@ -196,8 +197,18 @@ mod tests {
         let a = Spectrum::new([1.0, 2.0, 3.0, 4.0]);
         let b = Spectrum::splat(2.0);
         assert_eq!((a * b + 1.0).to_array(), [3.0, 5.0, 7.0, 9.0]);
-        assert_eq!(a.max_element(), 4.0);
-        assert_eq!(a.average(), 2.5);
         assert!(!a.is_black() && Spectrum::ZERO.is_black());
+    }
+
+    /// Red times blue is black, whatever is left in the spare lane.
+    #[test]
+    fn the_spare_lane_decides_nothing() {
+        let a = Spectrum::new([1.0, 2.0, 3.0, 40.0]);
+        assert_eq!(a.max_element(), 3.0);
+        assert_eq!(a.average(), 2.0);
+        let (red, blue) = (Spectrum::from_rgb([1.0, 0.0, 0.0]), Spectrum::from_rgb([0.0, 0.0, 1.0]));
+        assert!((red * blue).is_black());
+        assert!(Spectrum::new([1.0, 2.0, 3.0, f32::NAN]).is_finite());
+        assert!(!Spectrum::new([1.0, f32::INFINITY, 3.0, 4.0]).is_finite());
     }
 }

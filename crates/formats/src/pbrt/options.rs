@@ -40,10 +40,12 @@ impl Reader<'_, '_> {
         if gain != 1.0 {
             params.push("gain", Value::Float(gain), film.at("iso"));
         }
-        if let Some(most) = film.try_float("maxcomponentvalue")? {
-            params.push("max_component", Value::Float(most), film.at("maxcomponentvalue"));
-        }
         let sensor = film.text("sensor")?.unwrap_or("cie1931").to_owned();
+        if let Some(most) = film.try_float("maxcomponentvalue")? {
+            // Its channels are those of the sensor.
+            let limit = if sensor == "cie1931" { "max_xyz" } else { "max_component" };
+            params.push(limit, Value::Float(most), film.at("maxcomponentvalue"));
+        }
         if sensor != "cie1931" {
             self.warn(format!("sensor `{sensor}` is taken as `cie1931`"), film.at("sensor"));
         }

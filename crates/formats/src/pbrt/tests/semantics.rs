@@ -148,7 +148,7 @@ fn films_are_cropped_and_limited() {
             Some(Value::Int(n)) => *n,
             _ => -1,
         });
-        (crop, film.get("max_component").cloned())
+        (crop, film.get("max_xyz").cloned())
     };
     assert_eq!(film("\"float maxcomponentvalue\" 10"), ([-1; 4], Some(Value::Float(10.0))));
     assert_eq!(film("\"float cropwindow\" [0.5 0.25 0 0.5]").0, [25, 25, 0, 25]);
