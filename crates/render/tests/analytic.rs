@@ -110,6 +110,76 @@ fn a_point_light_over_a_floor() {
     }
 }
 
+/// A floor of a material under a point light of intensity 3, seen from its side.
+fn floor(make: impl Fn(&mut Builder) -> Value, light: [f64; 3]) -> Builder {
+    let mut b = Builder::new();
+    let bsdf = make(&mut b);
+    b.shape("rectangle", Params::new().with("bsdf", bsdf));
+    let params = Params::new().with("position", Value::Vec3(light)).with("intensity", Value::Float(3.0));
+    b.light("point", params);
+    b.camera([0.5, 0.0, light[2].signum() as f32], [0.0, 0.0, 0.0], Vector3::Z);
+    b
+}
+
+/// What is not there neither hides the light nor ends a segment; half of it takes half the light; and where that is asked for,
+/// it is a surface like all others.
+#[test]
+fn light_samples_pass_what_is_not_there() {
+    let lit = 0.5 / std::f64::consts::PI * 3.0 / 4.0;
+    for (opacity, see_through, expected) in
+        [(0.0, "true", lit), (0.25, "true", 0.75 * 0.75 * lit), (1.0, "true", 0.0), (0.0, "false", 0.0)]
+    {
+        let mut b = floor(|b| b.diffuse(0.5), [0.0, 0.0, 2.0]);
+        let black = b.diffuse(0.0);
+        let mask = Params::new().with("opacity", Value::Float(opacity)).with("bsdf", black);
+        let mask = b.node(Family::Bsdf, "mask", mask);
+        // The camera is outside of it, the light too.
+        let place = Value::Transform(Transform::translate(Vector3::new(0.0, 0.0, 0.2)));
+        b.shape("rectangle", Params::new().with("bsdf", mask).with("world_from_object", place));
+        let settings = [("integrator.max_depth", "2"), ("integrator.see_through", see_through)];
+        b.expect("path", &settings, expected);
+    }
+}
+
+/// A matte floor scatters what a mirror would reflect: all of it.
+#[test]
+fn a_mirror_can_be_made_matte() {
+    let mirror = |b: &mut Builder| {
+        b.node(Family::Bsdf, "conductor", Params::new().with("material", Value::String("none".into())))
+    };
+    let b = floor(mirror, [0.0, 0.0, 2.0]);
+    let settings = [("integrator.max_depth", "2"), ("integrator.force_diffuse", "true")];
+    b.expect("path", &settings, 3.0 / 4.0 / std::f64::consts::PI);
+}
+
+/// A slope of height / 2 along X turns the normal; from behind it is the same surface, not its mirror image.
+#[test]
+fn bumps_are_the_same_surface_from_behind() {
+    for z in [1.0, -1.0] {
+        let bumpy = |b: &mut Builder| {
+            let slope = Params::new()
+                .with("v00", Value::Float(0.0))
+                .with("v01", Value::Float(0.0))
+                .with("v10", Value::Float(1.0))
+                .with("v11", Value::Float(1.0));
+            let slope = b.node(Family::Texture, "bilerp", slope);
+            let grey = b.diffuse(0.5);
+            let both = b.node(Family::Bsdf, "two_sided", Params::new().with("bsdf", grey));
+            let bump = Params::new()
+                .with("bsdf", both)
+                .with("texture", slope)
+                .with("tangents", Value::String("displaced".into()))
+                .with("keep_sides", Value::Bool(false))
+                .with("flip_invalid_normals", Value::Bool(false))
+                .with("soften_terminator", Value::Bool(false));
+            b.node(Family::Bsdf, "bump", bump)
+        };
+        let b = floor(bumpy, [1.0, 0.0, z]);
+        let cos = (1.0 - 0.5 * z) / (1.25_f64.sqrt() * 2.0_f64.sqrt());
+        b.expect("path", &[("integrator.max_depth", "2")], 0.5 / std::f64::consts::PI * 3.0 / 2.0 * cos);
+    }
+}
+
 /// The middle below a parallel disk of radius R at height h receives E = π L R² / (R² + h²).
 #[test]
 fn a_disk_light_over_a_floor() {

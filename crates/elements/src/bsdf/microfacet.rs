@@ -375,6 +375,22 @@ mod tests {
         }
     }
 
+    /// Joint shadowing by Smith's function of slopes, of GGX: Λ = (sqrt(1 + (α tan θ)²) - 1) / 2 [Heitz 2014, equation 72].
+    #[test]
+    fn correlated_shadowing_is_heitzs() {
+        let surface = Microfacet::new(Distribution::Ggx, 0.7, 0.7);
+        let lambda = |w: Vector3| 0.5 * ((1.0 + (0.7 * w.z.acos().tan()).powi(2)).sqrt() - 1.0);
+        for [a, b] in [[0.3_f32, 0.9_f32], [1.3, 1.4], [0.0, 1.5]] {
+            let (wo, wi) = (spherical_direction(a, 0.4), spherical_direction(b, 2.0));
+            let m = (wo + wi).normalized();
+            let separable = surface.g(wo, wi, m);
+            let correlated = surface.with_shadowing(Shadowing::HeightCorrelated).g(wo, wi, m);
+            let [o, i] = [lambda(wo), lambda(wi)];
+            assert!((separable - 1.0 / ((1.0 + o) * (1.0 + i))).abs() < 1e-4, "{a} {b}: {separable}");
+            assert!((correlated - 1.0 / (1.0 + o + i)).abs() < 1e-4, "{a} {b}: {correlated}");
+        }
+    }
+
     /// E[h(m)] of drawn normals against the integral of h under the stated density, for three functions h.
     #[test]
     fn visible_normals_follow_their_density() {

@@ -51,3 +51,15 @@ impl Lobe {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn widths_double_between_their_bounds() {
+        for (given, expected) in [(0.0, 0.1), (0.02, 0.1), (0.1, 0.2), (0.2, 0.3), (0.3, 0.3), (0.5, 0.5)] {
+            assert!((roughened(given) - expected).abs() < 1e-6, "{given}");
+        }
+    }
+}

@@ -261,3 +261,30 @@ fn shapes_objects_and_cameras_move() {
     assert!(!still[still.cameras[0]].params.has("shutter_close") && still.shapes.len() == 1);
     assert!(mistake("TransformTimes 1 1").0.contains("later"));
 }
+
+/// Bumps bend what is two-sided, not the other way round; of a normal map and a displacement the former counts.
+#[test]
+fn bumps_are_outside_and_normal_maps_come_first() {
+    let text = "WorldBegin Texture \"h\" \"float\" \"fbm\"
+        Material \"diffuse\" \"texture displacement\" \"h\" Shape \"sphere\"";
+    let desc = good(text);
+    let Some(Value::Node(material)) = shape(&desc, 0).params.get("bsdf") else { panic!() };
+    let bump = &desc[*material];
+    assert_eq!(bump.kind, "bump");
+    assert_eq!(bump.params.get("keep_sides"), Some(&Value::Bool(false)));
+    let Some(Value::Node(inner)) = bump.params.get("bsdf") else { panic!() };
+    assert_eq!(desc[*inner].kind, "two_sided");
+}
+
+#[test]
+fn integrators_and_options_reach_the_path() {
+    let path = |text: &str| {
+        let desc = good(&format!("{text} WorldBegin"));
+        let params = &desc[desc.integrator.expect("there is always one")].params;
+        ["regularize", "force_diffuse"].map(|name| params.get(name).cloned())
+    };
+    let yes = Some(Value::Bool(true));
+    assert_eq!(path("Integrator \"volpath\""), [None, None]);
+    assert_eq!(path("Integrator \"path\" \"bool regularize\" true"), [yes.clone(), None]);
+    assert_eq!(path("Option \"bool forcediffuse\" true Integrator \"path\""), [None, yes]);
+}
