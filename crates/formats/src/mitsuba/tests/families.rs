@@ -233,7 +233,7 @@ fn integrators() {
     for (xml, text) in [
         (
             r#"<integrator type="path"><integer name="max_depth" value="6"/></integrator>"#,
-            "path(max_depth=6)",
+            "path(see_through=false max_depth=6)",
         ),
         (
             r#"<integrator type="direct"><integer name="shading_samples" value="3"/></integrator>"#,
@@ -241,9 +241,9 @@ fn integrators() {
         ),
         (
             r#"<integrator type="moment"><integrator type="path"/></integrator>"#,
-            "path(layers=_arg_0:xyz,m2__arg_0:xyz2)",
+            "path(see_through=false layers=_arg_0:xyz,m2__arg_0:xyz2)",
         ),
-        (r#"<integrator type="ptracer"/>"#, "path()"),
+        (r#"<integrator type="ptracer"/>"#, "path(see_through=false)"),
         (r#"<integrator type="depth"/>"#, "depth(from_near_clip=true)"),
         (r#"<integrator type="volpath"/>"#, "path()"),
         (
@@ -252,7 +252,7 @@ fn integrators() {
         ),
         (
             r#"<integrator type="aov"><string name="aovs" value="dd.y:depth, uv:uv"/><integrator type="path" name="image"/></integrator>"#,
-            "path(layers=image:radiance,dd.y:depth,uv:uv)",
+            "path(see_through=false layers=image:radiance,dd.y:depth,uv:uv)",
         ),
         (
             r#"<integrator type="aov"><string name="aovs" value="d:depth"/><integrator type="moment" name="m"><integrator type="direct" name="p"/></integrator></integrator>"#,
@@ -266,7 +266,10 @@ fn integrators() {
     let (scene, warnings) = read(
         r#"<integrator type="aov"><string name="aovs" value="dd:depth,d:boundary_test"/><integrator type="path"/></integrator>"#,
     );
-    assert_eq!(show(&scene, scene.integrator.unwrap()), "path(layers=_arg_0:radiance,dd:depth)");
+    assert_eq!(
+        show(&scene, scene.integrator.unwrap()),
+        "path(see_through=false layers=_arg_0:radiance,dd:depth)"
+    );
     assert_eq!(warnings, ["the layer `d:boundary_test` is left out"]);
     let (_, warnings) = read(r#"<integrator type="volpath"/><medium type="homogeneous" id="m"/>"#);
     assert_eq!(warnings, ["participating media are not rendered yet: `volpath` is rendered as `path`"]);
