@@ -24,7 +24,7 @@ fn parts_with_their_materials() {
     assert_eq!((second.name.as_str(), second.material.as_deref()), ("second", Some("blue")));
     assert_eq!(second.mesh.positions.len(), 6, "with and without a normal are two vertices");
     assert_eq!(second.mesh.normals, [[0.0, 0.0, 1.0]; 6], "missing normals are those of the face");
-    assert_eq!(file.notes, [String::new(); 0]);
+    assert!(file.notes.is_empty(), "{:?}", file.notes);
 }
 
 #[test]
