@@ -22,6 +22,7 @@ mod params;
 mod report;
 mod scene_desc;
 mod span;
+mod split;
 mod value;
 
 pub use error::{SceneError, suggest};

@@ -47,6 +47,11 @@ impl Report {
         self.warn_with_help(message, None, at);
     }
 
+    /// Adds several warnings about one place.
+    pub fn warn_all(&mut self, messages: &[String], at: Span) {
+        messages.iter().for_each(|message| self.warn(message, at));
+    }
+
     /// Adds a warning that says how to mend it.
     pub fn warn_with_help(&mut self, message: impl Into<String>, help: Option<String>, at: Span) {
         let message = message.into();

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use aureole_desc::{Limits, SceneError, SourceId, Sources, Span};
+use aureole_image::stray;
 use flate2::read::MultiGzDecoder;
 
 /// The two bytes that every gzip file starts with (RFC 1952, section 2.3.1).
@@ -17,7 +18,8 @@ const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// person names (`at` is nowhere) may be anything that can be read.
 ///
 /// # Errors
-/// [`SceneError::Read`], or [`SceneError::Limit`] when it is, or unpacks to, more than the limits allow.
+/// [`SceneError::Read`], [`SceneError::Limit`] when it is, or unpacks to, more than the limits allow, or [`SceneError::Asset`]
+/// when it is a [`stray`].
 pub fn read_bytes(path: &Path, limits: &Limits, at: Span) -> Result<Vec<u8>, SceneError> {
     let failed = |source| SceneError::Read { path: path.to_owned(), source, at };
     let kind = std::fs::metadata(path).map_err(failed)?;
@@ -32,13 +34,17 @@ pub fn read_bytes(path: &Path, limits: &Limits, at: Span) -> Result<Vec<u8>, Sce
     read_capped(&mut file, &mut bytes, limits.max_file_bytes).map_err(failed)?;
     check_size(path, bytes.len() as u64, limits.max_file_bytes, at)?;
     tracing::debug!(path = %path.display(), bytes = bytes.len(), "file read");
-    unpack(path, bytes, limits, at)
+    let bytes = unpack(path, bytes, limits, at)?;
+    match stray(&bytes) {
+        Some(what) => Err(SceneError::Asset { path: path.to_owned(), message: what.to_owned(), at }),
+        None => Ok(bytes),
+    }
 }
 
 /// Unpacks gzip; anything else stays as it is.
 ///
 /// # Errors
-/// As [`read_bytes`].
+/// [`SceneError::Read`] or [`SceneError::Limit`].
 pub fn unpack(path: &Path, bytes: Vec<u8>, limits: &Limits, at: Span) -> Result<Vec<u8>, SceneError> {
     if !bytes.starts_with(&GZIP_MAGIC) {
         return Ok(bytes);
@@ -181,6 +187,15 @@ mod tests {
         assert_eq!(search.resolve("meshes/a.ply"), folder.path().join("meshes/a.ply"));
         assert_eq!(search.resolve("meshes\\a.ply"), folder.path().join("meshes/a.ply"));
         assert_eq!(search.resolve("b.ply"), Path::new("/nowhere/b.ply"));
+    }
+
+    #[test]
+    fn strays_are_refused_by_the_door_of_all_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bunny.ply");
+        std::fs::write(&path, "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n").unwrap();
+        let error = read_bytes(&path, &Limits::default(), Span::NONE).unwrap_err().to_string();
+        assert!(error.contains("bunny.ply") && error.contains("Git LFS pointer"), "{error}");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use aureole_desc::{Limits, Report, SceneDesc, SceneError, Sources, Span};
+use aureole_image::stray;
 
 use crate::{LoadOptions, file};
 
@@ -66,6 +67,9 @@ pub(crate) fn of_file(path: &Path, limits: &Limits) -> Result<&'static Format, S
         return Ok(format);
     }
     let start = file::read_start(path, limits, Span::NONE)?;
+    if let Some(what) = stray(&start) {
+        return Err(SceneError::Asset { path: path.to_owned(), message: what.to_owned(), at: Span::NONE });
+    }
     FORMATS.iter().find(|format| (format.sniff)(&start)).ok_or_else(|| SceneError::UnknownName {
         what: "scene format",
         name: path.display().to_string(),

@@ -7,6 +7,7 @@ use aureole_spectrum::Tabulated;
 
 use crate::file;
 use crate::mesh::MeshError;
+use crate::mesh::lines::{lines, without_mark};
 
 /// Reads a spectrum.
 ///
@@ -23,14 +24,15 @@ pub fn read(path: &Path, limits: &Limits, at: Span) -> Result<Tabulated, SceneEr
 /// As [`read`].
 pub fn decode(text: &str) -> Result<Tabulated, MeshError> {
     let mut numbers: Vec<f32> = Vec::new();
-    for (i, line) in text.lines().enumerate() {
+    for (number, line) in lines(without_mark(text.as_bytes())) {
+        let line = String::from_utf8_lossy(line);
         let data = line.split('#').next().unwrap_or("");
         let words = data.split(|c: char| c == ',' || c == ';' || c.is_whitespace());
         for word in words.filter(|word| !word.is_empty()) {
-            let number = word.parse::<f32>().ok().filter(|x| x.is_finite());
-            numbers.push(number.ok_or_else(|| {
+            let value = word.parse::<f32>().ok().filter(|x| x.is_finite());
+            numbers.push(value.ok_or_else(|| {
                 let word: String = word.chars().take(32).collect();
-                MeshError::content(format!("line {}: a finite number is wanted, not `{word}`", i + 1))
+                MeshError::content(format!("line {number}: a finite number is wanted, not `{word}`"))
             })?);
         }
     }
@@ -55,7 +57,8 @@ mod tests {
 
     #[test]
     fn pairs_comments_and_empty_lines() {
-        let table = decode("# a lamp\n400 0.5 # violet\n\n500, 1\n600;2 700 3\n").expect("is sound");
+        let table =
+            decode("\u{feff}# a lamp\r400 0.5 # violet\n\n500, 1\r\n600;2 700 3\n").expect("is sound");
         assert_eq!(table.lambda, [400.0, 500.0, 600.0, 700.0]);
         assert_eq!(table.values, [0.5, 1.0, 2.0, 3.0]);
     }

@@ -34,11 +34,18 @@ pub fn of(target: &str) -> Vec<Sample> {
         }
         "ply" => vec![
             sample("ascii", include_bytes!("../samples/quad.ply")),
+            sample("scan", include_bytes!("../samples/scan.ply")),
             sample("little", &ply("binary_little_endian", f32::to_le_bytes, i32::to_le_bytes)),
             sample("big", &ply("binary_big_endian", f32::to_be_bytes, i32::to_be_bytes)),
         ],
-        "obj" => vec![sample("parts", include_bytes!("../samples/parts.obj"))],
-        "mtl" => vec![sample("library", include_bytes!("../samples/library.mtl"))],
+        "obj" => vec![
+            sample("parts", include_bytes!("../samples/parts.obj")),
+            sample("words", include_bytes!("../samples/words.obj")),
+        ],
+        "mtl" => vec![
+            sample("library", include_bytes!("../samples/library.mtl")),
+            sample("words", include_bytes!("../samples/words.mtl")),
+        ],
         "serialized" => vec![sample("version-3", &serialized(3)), sample("version-4", &serialized(4))],
         "vol" => vec![sample("ball", &vol())],
         "brdf" => vec![sample("rgl", &rgl()), sample("merl", &merl())],

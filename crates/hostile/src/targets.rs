@@ -38,7 +38,7 @@ impl Target {
 pub const ALL: &[Target] = &[
     Target { name: "pbrt", run: |bytes| drop(read("pbrt", bytes)) },
     Target { name: "mitsuba", run: |bytes| drop(read("mitsuba", bytes)) },
-    Target { name: "ply", run: |bytes| check_mesh(ply::decode(bytes, &LIMITS)) },
+    Target { name: "ply", run: |bytes| check_mesh(ply::decode(bytes, &LIMITS).map(|file| file.mesh)) },
     Target { name: "obj", run: check_obj },
     Target { name: "mtl", run: |bytes| drop(obj::parse_materials(&String::from_utf8_lossy(bytes))) },
     Target { name: "serialized", run: check_serialized },

@@ -25,6 +25,7 @@ mod limits;
 mod metadata;
 pub mod metric;
 mod raster;
+mod stray;
 mod tone;
 
 pub use crate::image::{Image, Window};
@@ -38,4 +39,5 @@ pub use encoding::Encoding;
 pub use error::ImageError;
 pub use limits::ImageLimits;
 pub use metadata::{Attribute, Metadata};
+pub use stray::stray;
 pub use tone::{Dither, ToneCurve, ToneMapping};

@@ -10,6 +10,7 @@ use aureole_math::{Arena, Bounds3, Id, Motion, Point3, Transform, Vector3};
 use aureole_spectrum::{SpectrumRole, SpectrumSource, Wavelengths};
 use rustc_hash::FxHashMap;
 
+use crate::attributes;
 use crate::film::Film;
 use crate::lights::LightPicker;
 use crate::origins::Origins;
@@ -35,6 +36,7 @@ pub struct CompileOptions {
 /// The first thing that is wrong; further ones are in the report.
 pub fn compile(desc: &SceneDesc, options: &CompileOptions, report: &mut Report) -> Result<Scene, SceneError> {
     let film = Film::of(desc, &options.limits)?;
+    attributes::check(desc, report);
     let resolve = Resolve::new(desc, report, film.full, options.limits);
     let mut compiler = Compiler {
         resolve,

@@ -16,6 +16,7 @@
 
 #![forbid(unsafe_code)]
 
+mod attributes;
 mod compile;
 mod film;
 mod lights;

@@ -5,7 +5,7 @@
 //! | `name` | string | vertex_color | the attribute |
 //! | `scale` | float | 1 | factor |
 //!
-//! Zero on surfaces without that attribute.
+//! Zero on surfaces without that attribute, with a warning.
 
 use aureole_desc::{Attribute, AttributeDomain, ParamDoc, Params, SceneError};
 use aureole_math::Arena;

@@ -8,6 +8,7 @@ use aureole_desc::{Limits, SceneError, Span};
 use crate::file;
 use crate::mesh::MeshError;
 use crate::mesh::error::check_count;
+use crate::mesh::lines::{lines, without_mark};
 
 /// The control points of curves.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,16 +36,16 @@ pub fn decode(bytes: &[u8], least: usize, limits: &Limits) -> Result<Curves, Mes
     let mut points: Vec<f32> = Vec::new();
     let mut counts: Vec<i32> = Vec::new();
     let mut in_curve = false;
-    for (i, line) in bytes.split(|&b| b == b'\n').enumerate() {
+    for (number, line) in lines(without_mark(bytes)) {
         let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).peekable();
         if words.peek().is_none() {
             in_curve = false;
             continue;
         }
         for _ in 0..4 {
-            let number = words.next().and_then(|word| fast_float2::parse::<f32, _>(word).ok());
-            points.push(number.filter(|x| x.is_finite()).ok_or_else(|| {
-                MeshError::content(format!("line {} is not `x y z radius`, four finite numbers", i + 1))
+            let value = words.next().and_then(|word| fast_float2::parse::<f32, _>(word).ok());
+            points.push(value.filter(|x| x.is_finite()).ok_or_else(|| {
+                MeshError::content(format!("line {number} is not `x y z radius`, four finite numbers"))
             })?);
         }
         match counts.last_mut() {

@@ -29,6 +29,12 @@ impl MeshError {
         Self::Content(message.into())
     }
 
+    /// The error of a file that lacks something, and what its reader noted instead.
+    pub(crate) fn nothing_but(lack: &str, notes: &[String]) -> Self {
+        let notes = notes.iter().map(|note| format!("; {note}"));
+        Self::Content(std::iter::once(lack.to_owned()).chain(notes).collect())
+    }
+
     /// The same error, of a scene that asks for the file at `at`.
     pub fn in_file(self, path: &Path, at: Span) -> SceneError {
         match self {

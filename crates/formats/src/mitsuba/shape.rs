@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use aureole_desc::{Family, Limits, Mesh, Node, NodeId, Params, SceneError, Span, Value};
+use aureole_desc::{Family, Limits, Node, NodeId, Params, SceneError, Span, Value};
 use aureole_spectrum::SpectrumSource;
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use super::scope::Scope;
-use super::translate::{MeshKey, Orientation, Translator};
+use super::translate::{MeshKey, Orientation, ReadMesh, Translator};
 use super::tree::{ObjectId, Tag};
 use super::{ellipsoids, sensor};
-use crate::mesh::{curves, obj, ply, serialized, vol};
+use crate::mesh::{MeshFile, curves, obj, ply, serialized, vol};
 
 /// Mitsuba's plugins and Aureole's words for them.
 const KINDS: &[(&str, &str)] = &[
@@ -193,22 +193,29 @@ fn mesh_request<'a>(
     let face_normals = scope.bool("face_normals", false)?;
     // Mitsuba turns the texture coordinates of OBJ files round, unless told not to.
     let flip_v = scope.bool("flip_tex_coords", plugin == "obj")?;
-    scope.ignore(&["max_smooth_angle", "srgb", "collapse", "fold"]);
-    Ok(MeshRequest { plugin, key: (path, index, flip_v, face_normals), at })
+    let max_smooth_angle = scope.float("max_smooth_angle")?.map(f64::to_bits);
+    scope.ignore(&["collapse", "fold"]);
+    Ok(MeshRequest { plugin, key: MeshKey { path, index, flip_v, face_normals, max_smooth_angle }, at })
 }
 
 /// Gives a shape its mesh, which it shares with all that want it in the same way.
 fn mesh<'a>(t: &mut Translator<'a, '_, '_>, scope: &mut Scope<'a>) -> Result<(), SceneError> {
     let request = mesh_request(t, scope)?;
-    let (mesh, orientation) = match t.meshes.get(&request.key) {
+    let read = match t.meshes.get(&request.key) {
         Some(known) => known.clone(),
         None => read_mesh(&t.context.options.limits, &request)?,
     };
-    if orientation == Orientation::ByFaces {
+    for note in read.notes.iter() {
+        t.context.report.warn(format!("`{}`: {note}", request.key.path.display()), request.at);
+    }
+    if scope.bool("srgb", false)? && !read.mesh.attributes.is_empty() {
+        t.context.report.warn("`srgb` is not heeded: colours of vertices are linear", scope.span());
+    }
+    if read.orientation == Orientation::ByFaces {
         turn_if_mirrored(scope)?;
     }
-    scope.out.push("mesh", Value::Mesh(mesh), request.at);
-    if request.key.3 {
+    scope.out.push("mesh", Value::Mesh(read.mesh), request.at);
+    if request.key.face_normals {
         scope.out.push("face_normals", Value::Bool(true), scope.span());
     }
     Ok(())
@@ -216,30 +223,34 @@ fn mesh<'a>(t: &mut Translator<'a, '_, '_>, scope: &mut Scope<'a>) -> Result<(),
 
 fn read_mesh(
     limits: &Limits,
-    MeshRequest { plugin, key: (path, index, flip_v, face_normals), at }: &MeshRequest<'_>,
-) -> Result<(Arc<Mesh>, Orientation), SceneError> {
-    let mut face_normals = *face_normals;
-    let mut mesh = match *plugin {
-        "obj" => obj::read(path, limits, *at)?,
-        "ply" => ply::read(path, limits, *at)?,
+    MeshRequest { plugin, key, at }: &MeshRequest<'_>,
+) -> Result<ReadMesh, SceneError> {
+    let mut face_normals = key.face_normals;
+    let MeshFile { mut mesh, notes } = match *plugin {
+        "obj" => obj::read(&key.path, limits, *at)?,
+        "ply" => ply::read(&key.path, limits, *at)?,
         _ => {
-            let read = serialized::read(path, *index, limits, *at)?;
+            let read = serialized::read(&key.path, key.index, limits, *at)?;
             face_normals |= read.face_normals;
-            read.mesh
+            MeshFile { mesh: read.mesh, notes: Vec::new() }
         }
     };
-    if *flip_v {
+    if key.flip_v {
         mesh.uvs.iter_mut().for_each(|[_, v]| *v = 1.0 - *v);
     }
-    if !face_normals && !mesh.normals.is_empty() {
-        return Ok((Arc::new(mesh), Orientation::ByNormals));
+    let max_smooth_angle = key.max_smooth_angle.map(f64::from_bits).filter(|_| !face_normals);
+    let keeps_normals = !face_normals && max_smooth_angle.is_none() && !mesh.normals.is_empty();
+    let orientation = if keeps_normals { Orientation::ByNormals } else { Orientation::ByFaces };
+    if !keeps_normals {
+        mesh.normals.clear();
     }
-    // Meshes are smooth in Mitsuba unless they are told to be flat.
-    mesh.normals.clear();
-    if !face_normals {
-        mesh.add_smooth_normals();
+    match max_smooth_angle {
+        Some(degrees) => mesh.add_smooth_normals_up_to(degrees.to_radians() as f32),
+        // Meshes are smooth in Mitsuba unless they are told to be flat.
+        None if !keeps_normals && !face_normals => mesh.add_smooth_normals(),
+        None => {}
     }
-    Ok((Arc::new(mesh), Orientation::ByFaces))
+    Ok(ReadMesh { mesh: Arc::new(mesh), orientation, notes: notes.into() })
 }
 
 /// A grid of signed distances, with its values.

@@ -40,8 +40,27 @@ enum State {
     Done(Box<Value>),
 }
 
-/// What a mesh depends on: file, index in the file, whether v is flipped, whether normals are dropped.
-pub(super) type MeshKey = (PathBuf, usize, bool, bool);
+/// What a mesh depends on.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct MeshKey {
+    pub(super) path: PathBuf,
+    /// In the file.
+    pub(super) index: usize,
+    pub(super) flip_v: bool,
+    /// Whether normals are dropped.
+    pub(super) face_normals: bool,
+    /// The bits of the degrees up to which edges are smooth.
+    pub(super) max_smooth_angle: Option<u64>,
+}
+
+/// A mesh that was read.
+#[derive(Clone, Debug)]
+pub(super) struct ReadMesh {
+    pub(super) mesh: Arc<Mesh>,
+    pub(super) orientation: Orientation,
+    /// What is left out of the file.
+    pub(super) notes: Arc<[String]>,
+}
 
 /// What tells the outside of a mesh from its inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +82,7 @@ pub(super) struct Translator<'a, 'c, 'r> {
     /// Shapes met while merged ones were gathered.
     gathered: u64,
     /// Meshes that were read.
-    pub(super) meshes: FxHashMap<MeshKey, (Arc<Mesh>, Orientation)>,
+    pub(super) meshes: FxHashMap<MeshKey, ReadMesh>,
 }
 
 impl<'a> Translator<'a, '_, '_> {

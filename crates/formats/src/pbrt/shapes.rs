@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 use super::curve;
 use super::params::ParamSet;
 use super::state::Reader;
-use crate::mesh::ply;
+use crate::mesh::{MeshFile, ply};
 
 const KINDS: &[&str] =
     &["bilinearmesh", "curve", "cylinder", "disk", "loopsubdiv", "plymesh", "sphere", "trianglemesh"];
@@ -175,14 +175,20 @@ impl Reader<'_, '_> {
             users.push((id, index, at));
         }
         let limits = self.limits();
-        let read = |(path, at): &(PathBuf, Span)| ply::read(path, limits, *at).map(Arc::new);
+        let read = |(path, at): &(PathBuf, Span)| ply::read(path, limits, *at);
         let mut meshes = Vec::new();
         let mut errors = Vec::new();
         for result in files.par_iter().map(read).collect::<Vec<_>>() {
-            meshes.push(result.map_err(|error| errors.push(error)).ok());
+            let read = result.map_err(|error| errors.push(error)).ok();
+            meshes.push(read.map(|MeshFile { mesh, notes }| (Arc::new(mesh), notes)));
         }
         for (id, index, at) in users {
-            if let Some(mesh) = &meshes[index] {
+            if let Some((mesh, notes)) = &meshes[index] {
+                for note in notes {
+                    self.context
+                        .report
+                        .warn(format!("`{}`: {note}", files[index].0.display()), files[index].1);
+                }
                 self.desc[id].params.push("mesh", Value::Mesh(mesh.clone()), at);
             }
         }

@@ -22,7 +22,7 @@ pub use probe::{Probe, probe_image};
 
 use crate::error::Fault;
 use crate::raster::Raster;
-use crate::{Bitmap, Encoding, Image, ImageError, ImageLimits, ToneMapping, write_atomically};
+use crate::{Bitmap, Encoding, Image, ImageError, ImageLimits, ToneMapping, stray, write_atomically};
 
 /// How many bits a floating-point file spends on a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -161,6 +161,9 @@ static CODECS: &[Codec] = &[
 
 /// Decodes a file by what its first bytes say or else by its suffix.
 fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Raster, ImageError> {
+    if let Some(what) = stray(bytes) {
+        return Err(Fault::content(what).at(path));
+    }
     let codec = match CODECS.iter().find(|codec| (codec.recognises)(bytes)) {
         Some(codec) => codec,
         None => Format::from_path(path)?.codec(),

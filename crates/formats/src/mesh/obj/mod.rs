@@ -1,27 +1,35 @@
 //! Wavefront OBJ with its material libraries.
 //!
 //! Faces may have any number of corners, in any of the forms `v`, `v/vt`, `v//vn`, `v/vt/vn`, counted from the start or
-//! (negative) from the end. Corners that agree in all three become one vertex. Curves, surfaces and smoothing groups are
-//! skipped. Colours behind positions (`v x y z r g b`) become the attribute `vertex_color`; faces of more than three corners are
-//! remembered for subdivision.
+//! (negative) from the end. Corners that agree in all three become one vertex. Colours behind positions (`v x y z r g b`, from 0 to
+//! 1, 255 or 65535) or painted ones (`#MRGB`) become the attribute `vertex_color`; faces of more than three corners are remembered for
+//! subdivision. In parts, corners without normals get smooth ones within their smoothing group (`s`); without such a group
+//! they are flat.
+//!
+//! What is no face (points, lines, free-form curves and surfaces), faces of fewer than three corners and indices to texture
+//! coordinates or normals that are not there are left out with a note.
 //!
 //! # References
 //! Wavefront Technologies, "Advanced Visualizer Manual", appendices B1 (object files) and the MTL specification.
 
+mod corner;
 mod material;
 mod parser;
 mod part;
+mod texture_map;
+mod vertex;
 
 use std::path::Path;
 
-use aureole_desc::{Limits, Mesh, SceneError, Span};
+use aureole_desc::{Limits, SceneError, Span};
 
 use crate::file;
-use crate::mesh::MeshError;
+use crate::mesh::{MeshError, MeshFile};
 
-pub use material::{ObjMaterial, TextureMap, parse_materials};
+pub use material::{MaterialNote, Materials, ObjMaterial, parse_materials};
 pub use parser::ObjFile;
 pub use part::Part;
+pub use texture_map::TextureMap;
 
 /// How a file is cut up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,32 +41,18 @@ pub enum Split {
     Parts,
 }
 
-/// Reads a whole OBJ file as one mesh; materials are not looked at. Vertices that have no normal where others have one
-/// get a smooth one.
+/// Reads a whole OBJ file as one mesh; materials and smoothing groups are not looked at.
 ///
 /// # Errors
 /// A file that cannot be read, is malformed, or holds no face.
-pub fn read(path: &Path, limits: &Limits, at: Span) -> Result<Mesh, SceneError> {
+pub fn read(path: &Path, limits: &Limits, at: Span) -> Result<MeshFile, SceneError> {
     let bytes = file::read_bytes(path, limits, at)?;
     let in_file = |error: MeshError| error.in_file(path, at);
     let mut file = ObjFile::parse(&bytes, Split::Nothing, limits).map_err(in_file)?;
     match file.parts.pop() {
-        Some(part) => Ok(part.mesh),
-        None => Err(in_file(MeshError::content("no faces"))),
+        Some(part) => Ok(MeshFile { mesh: part.mesh, notes: file.notes }),
+        None => Err(in_file(file.no_faces())),
     }
-}
-
-/// Reads an OBJ file in its parts.
-///
-/// # Errors
-/// As [`read`].
-pub fn read_parts(path: &Path, limits: &Limits, at: Span) -> Result<ObjFile, SceneError> {
-    let bytes = file::read_bytes(path, limits, at)?;
-    let file = ObjFile::parse(&bytes, Split::Parts, limits).map_err(|error| error.in_file(path, at))?;
-    if file.parts.is_empty() {
-        return Err(MeshError::content("no faces").in_file(path, at));
-    }
-    Ok(file)
 }
 
 #[cfg(test)]

@@ -17,8 +17,16 @@ pub struct Part {
 /// Stands for a texture coordinate or normal that a corner does not have.
 pub(super) const MISSING: u32 = u32::MAX;
 
+/// Added to a smoothing group's number where a corner has one in the place of a normal.
+const SMOOTH: u32 = 1 << 31;
+
 /// A corner of a face: indices into the file's positions, texture coordinates and normals.
 pub(super) type Corner = [u32; 3];
+
+/// What stands for the normal of a corner that has none: a smoothing group, or nothing for group 0.
+pub(super) fn smoothed(group: u32) -> u32 {
+    if group == 0 { MISSING } else { SMOOTH | (group % (SMOOTH - 1)) }
+}
 
 /// The lists that corners point into.
 #[derive(Debug, Default)]
@@ -26,8 +34,8 @@ pub(super) struct Pools {
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) normals: Vec<[f32; 3]>,
-    /// One for each position, or none at all.
-    pub(super) colors: Vec<[f32; 3]>,
+    /// One for each position, none for those that have no colour; or an empty list.
+    pub(super) colors: Vec<Option<[f32; 3]>>,
 }
 
 /// A part under construction.
@@ -72,44 +80,70 @@ impl PartBuilder {
         })
     }
 
-    /// Looks the corners up in the pools.
-    pub(super) fn finish(self, pools: &Pools) -> Part {
-        let any = |field: usize| self.corners.iter().any(|corner| corner[field] != MISSING);
-        let mut mesh = Mesh {
-            positions: self.corners.iter().map(|corner| pools.positions[corner[0] as usize]).collect(),
-            ..self.mesh
-        };
-        if !pools.colors.is_empty() {
-            let data = gather(&self.corners, 0, &pools.colors).concat();
+    /// Looks the corners up in the pools. Positions must be there.
+    pub(super) fn finish(mut self, pools: &Pools) -> Part {
+        self.vertices = FxHashMap::default();
+        let has_normal = |c: &Corner| (c[2] as usize) < pools.normals.len() || is_smoothed(c[2]);
+        let with_normal = self.corners.iter().filter(|c| has_normal(c)).count();
+        if with_normal > 0 && with_normal < self.corners.len() {
+            self.part_from_neighbours(has_normal);
+        }
+        let corners = &self.corners;
+        let mut mesh = self.mesh;
+        mesh.positions = corners.iter().map(|c| pools.positions[c[0] as usize]).collect();
+        let color = |c: &Corner| pools.colors.get(c[0] as usize).copied().flatten();
+        if corners.iter().any(|c| color(c).is_some()) {
+            let data = corners.iter().flat_map(|c| color(c).unwrap_or([1.0; 3])).collect();
             let (name, domain) = ("vertex_color".to_owned(), AttributeDomain::Vertex);
             mesh.attributes.push(Attribute { name, domain, channels: 3, data });
         }
-        if any(1) {
-            mesh.uvs = gather(&self.corners, 1, &pools.uvs);
+        if corners.iter().any(|c| (c[1] as usize) < pools.uvs.len()) {
+            let uv = |c: &Corner| pools.uvs.get(c[1] as usize).copied().unwrap_or_default();
+            mesh.uvs = corners.iter().map(uv).collect();
         }
-        if any(2) {
-            let written: Vec<[f32; 3]> = gather(&self.corners, 2, &pools.normals);
-            mesh.normals = written;
-            if self.corners.iter().any(|corner| corner[2] == MISSING) {
-                fill_missing_normals(&mut mesh, &self.corners);
-            }
+        if with_normal > 0 {
+            mesh.normals = normals(&mesh, corners, pools);
         }
         Part { name: self.name, material: self.material, mesh }
     }
-}
 
-/// One value per corner; zeros where there is none.
-fn gather<const N: usize>(corners: &[Corner], field: usize, pool: &[[f32; N]]) -> Vec<[f32; N]> {
-    corners.iter().map(|corner| pool.get(corner[field] as usize).copied().unwrap_or([0.0; N])).collect()
-}
-
-/// Some corners have normals and some do not: the latter get smooth ones.
-fn fill_missing_normals(mesh: &mut Mesh, corners: &[Corner]) {
-    let written = std::mem::take(&mut mesh.normals);
-    mesh.add_smooth_normals();
-    for ((normal, written), corner) in mesh.normals.iter_mut().zip(written).zip(corners) {
-        if corner[2] != MISSING {
-            *normal = written;
+    /// Gives each corner without a normal a vertex of its own, so that its face stays flat beside those that are not.
+    fn part_from_neighbours(&mut self, has_normal: impl Fn(&Corner) -> bool) {
+        let mut is_taken = vec![false; self.corners.len()];
+        for index in self.mesh.indices.iter_mut().flatten() {
+            let corner = self.corners[*index as usize];
+            if !has_normal(&corner) && std::mem::replace(&mut is_taken[*index as usize], true) {
+                *index = self.corners.len() as u32;
+                self.corners.push(corner);
+            }
         }
     }
+}
+
+fn is_smoothed(normal: u32) -> bool {
+    normal >= SMOOTH && normal != MISSING
+}
+
+/// The normals that are written; else those of the faces of one smoothing group around a position; else that of the face.
+fn normals(mesh: &Mesh, corners: &[Corner], pools: &Pools) -> Vec<[f32; 3]> {
+    if corners.iter().all(|c| (c[2] as usize) < pools.normals.len()) {
+        return corners.iter().map(|c| pools.normals[c[2] as usize]).collect();
+    }
+    // Vertices that share a normal: those of one position and group, which texture coordinates may part.
+    let mut shared: FxHashMap<[u32; 2], usize> = FxHashMap::default();
+    let mut groups = 0;
+    let mut new_group = || {
+        groups += 1;
+        groups - 1
+    };
+    let group_of: Vec<usize> = corners
+        .iter()
+        .map(|&[position, _, normal]| match is_smoothed(normal) {
+            true => *shared.entry([position, normal]).or_insert_with(&mut new_group),
+            false => new_group(),
+        })
+        .collect();
+    let made = mesh.smooth_normals(groups, |vertex| group_of[vertex]);
+    let normal = |(c, made): (&Corner, [f32; 3])| pools.normals.get(c[2] as usize).copied().unwrap_or(made);
+    corners.iter().zip(made).map(normal).collect()
 }

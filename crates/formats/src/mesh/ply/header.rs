@@ -1,6 +1,7 @@
 //! The header: elements and their properties.
 
 use crate::mesh::MeshError;
+use crate::mesh::lines::without_mark;
 
 /// How numbers are written after the header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +37,19 @@ impl Scalar {
             "double" | "float64" => Self::F64,
             _ => return None,
         })
+    }
+
+    /// What stands for one where a quantity is written in this type: the largest whole number.
+    pub(super) fn full(self) -> f32 {
+        match self {
+            Self::I8 => i8::MAX.into(),
+            Self::U8 => u8::MAX.into(),
+            Self::I16 => i16::MAX.into(),
+            Self::U16 => u16::MAX.into(),
+            Self::I32 => i32::MAX as f32,
+            Self::U32 => u32::MAX as f32,
+            Self::F32 | Self::F64 => 1.0,
+        }
     }
 
     /// Bytes of a binary number.
@@ -91,6 +105,8 @@ impl Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
+    /// Pictures that comments name (`comment TextureFile`), as MeshLab and scanning programs do.
+    pub(super) pictures: Vec<String>,
     /// Lines of the header, so that messages about an ascii body can count on.
     pub(super) lines: usize,
 }
@@ -98,17 +114,23 @@ pub(super) struct Header {
 impl Header {
     /// Parses the header; gives the bytes after it too.
     pub(super) fn parse(bytes: &[u8]) -> Result<(Self, &[u8]), MeshError> {
+        let bytes = without_mark(bytes);
         if !bytes.starts_with(b"ply") {
             return Err(MeshError::content("not a PLY file: it does not start with `ply`"));
         }
+        let end_of_line = end_of_lines(bytes);
         let (mut rest, mut lines) = (bytes, 0);
-        let (mut encoding, mut elements) = (None, Vec::new());
-        while let Some(line) = take_line(&mut rest) {
+        let (mut encoding, mut elements, mut pictures) = (None, Vec::new(), Vec::new());
+        while let Some(line) = take_line(&mut rest, end_of_line) {
             lines += 1;
             let wrong = |message: String| MeshError::content(format!("line {lines}: {message}"));
-            let line = std::str::from_utf8(line).unwrap_or("comment");
+            let line = String::from_utf8_lossy(line);
             let words: Vec<&str> = line.split_ascii_whitespace().collect();
             match words.as_slice() {
+                ["comment", word, _, ..] if word.eq_ignore_ascii_case("TextureFile") => {
+                    let name = line.split_once(word).map_or("", |(_, name)| name.trim());
+                    pictures.push(name.to_owned());
+                }
                 [] | ["ply" | "comment" | "obj_info", ..] => {}
                 ["format", word, ..] => encoding = Some(parse_encoding(word).map_err(wrong)?),
                 ["element", name, count] => elements.push(parse_element(name, count).map_err(wrong)?),
@@ -123,7 +145,7 @@ impl Header {
                 }
                 ["end_header"] => {
                     let encoding = encoding.ok_or_else(|| wrong("no `format` in the header".into()))?;
-                    return Ok((Self { encoding, elements, lines }, rest));
+                    return Ok((Self { encoding, elements, pictures, lines }, rest));
                 }
                 _ => return Err(wrong(format!("cannot understand `{line}` in the header"))),
             }
@@ -132,9 +154,17 @@ impl Header {
     }
 }
 
-/// The bytes up to the next newline, without a carriage return.
-fn take_line<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
-    let end = rest.iter().position(|&b| b == b'\n')?;
+/// What ends the lines of a header: a newline, or a carriage return where the first line ends in one alone.
+///
+/// Bytes may follow the last line that look like the other half of a line end.
+fn end_of_lines(bytes: &[u8]) -> u8 {
+    let first = bytes.iter().position(|&b| b == b'\n' || b == b'\r').map_or(&[][..], |end| &bytes[end..]);
+    if first.starts_with(b"\r") && !first.starts_with(b"\r\n") { b'\r' } else { b'\n' }
+}
+
+/// The bytes up to the next end of a line, without the carriage return before a newline.
+fn take_line<'a>(rest: &mut &'a [u8], end_of_line: u8) -> Option<&'a [u8]> {
+    let end = rest.iter().position(|&b| b == end_of_line)?;
     let line = &rest[..end];
     *rest = &rest[end + 1..];
     Some(line.strip_suffix(b"\r").unwrap_or(line))

@@ -3,6 +3,7 @@
 use aureole_desc::{Attribute, AttributeDomain};
 
 use super::header::{Element, Kind, Property, Scalar};
+use crate::mesh::colors;
 
 /// Where a number goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +18,10 @@ pub(super) enum Target {
     Attribute { index: usize, channel: usize, divisor: f32 },
     /// The list of a face's vertices.
     Corners,
+    /// The list of a face's texture coordinates, two for each corner.
+    CornerUvs,
+    /// Which of the pictures a face shows.
+    Picture,
     /// Nowhere.
     Skip,
 }
@@ -28,6 +33,8 @@ pub(super) struct Layout {
     pub(super) targets: Vec<Target>,
     /// The attributes, still empty.
     pub(super) attributes: Vec<Attribute>,
+    /// Colours whose type is too wide to say how far they go: the attribute, and the type's largest number.
+    wide_colors: Vec<(usize, f32)>,
 }
 
 /// The usual names of positions, normals and texture coordinates.
@@ -59,9 +66,23 @@ impl Layout {
 
     pub(super) fn of_faces(element: &Element) -> Self {
         Self::new(element, "face", AttributeDomain::Face, |property| {
-            let is_corners = matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
-            (is_corners && matches!(property.kind, Kind::List { .. })).then_some(Target::Corners)
+            match (property.name.as_str(), property.kind) {
+                ("vertex_indices" | "vertex_index", Kind::List { .. }) => Some(Target::Corners),
+                ("texcoord", Kind::List { .. }) => Some(Target::CornerUvs),
+                ("texnumber", Kind::One(_)) => Some(Target::Picture),
+                _ => None,
+            }
         })
+    }
+
+    /// The attributes, once they are filled.
+    pub(super) fn into_attributes(mut self) -> Vec<Attribute> {
+        for (index, largest) in self.wide_colors {
+            let data = &mut self.attributes[index].data;
+            let span = colors::span(data.iter().copied(), largest);
+            data.iter_mut().for_each(|value| *value /= span);
+        }
+        self.attributes
     }
 
     fn new(
@@ -72,7 +93,7 @@ impl Layout {
     ) -> Self {
         let mut layout = Self {
             targets: element.properties.iter().map(|p| known(p).unwrap_or(Target::Skip)).collect(),
-            attributes: Vec::new(),
+            ..Self::default()
         };
         layout.drop_incomplete();
         for i in 0..element.properties.len() {
@@ -126,11 +147,13 @@ impl Layout {
         let channels = if count == 3 { 3 } else { usize::from(count == 1) };
         let index = self.attributes.len();
         for channel in 0..channels {
-            let divisor = match properties[first + channel].kind {
-                Kind::One(Scalar::U8) => 255.0,
-                _ => 1.0,
-            };
+            let Kind::One(scalar) = properties[first + channel].kind else { continue };
+            let is_wide = matches!(scalar, Scalar::I32 | Scalar::U32);
+            let divisor = if is_wide { 1.0 } else { scalar.full() };
             self.targets[first + channel] = Target::Attribute { index, channel, divisor };
+            if is_wide && channel == 0 && matches!(start, "r" | "red") {
+                self.wide_colors.push((index, scalar.full()));
+            }
         }
         if channels > 0 {
             let name = format!("{prefix}_{stem}");

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use aureole_desc::{Report, SceneDesc, SceneError, Sources};
+use aureole_desc::{Report, SceneDesc, SceneError, Sources, Value};
 use aureole_math::{Point3, Transform, Vector3};
 
 use super::{read_with, show};
@@ -122,7 +122,25 @@ fn files_that_are_missing_or_go_in_circles() {
     assert!(missing.starts_with("missing.xml:3:34: cannot read") && missing.contains("no.ply"), "{missing}");
     let lost = wrong("lost.xml");
     assert!(lost.starts_with("lost.xml:1:43: cannot read"), "{lost}");
-    assert!(wrong("broken.xml").ends_with("line 2: index 2 points outside of the 1 vertices so far"));
+    assert!(wrong("broken.xml").ends_with("line 2: index 3 points outside of the 1 vertices"));
+}
+
+#[test]
+fn edges_stay_sharp_beyond_the_smooth_angle_and_what_a_mesh_lacks_is_said() {
+    let right_angle = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 -1\nv 1 0 -1\nf 1 2 3 4\nf 2 1 5 6\nf 1 2\n";
+    let folder = folder(&[("t.obj", right_angle)]);
+    for (angle, vertices) in [("30", 8), ("91", 6)] {
+        let scene = format!(
+            "<scene version=\"0.6.0\"><shape type=\"obj\"><string name=\"filename\" value=\"t.obj\"/>\
+             <float name=\"maxSmoothAngle\" value=\"{angle}\"/></shape></scene>"
+        );
+        std::fs::write(folder.path().join("scene.xml"), scene).unwrap();
+        let (scene, report) = read(&folder.path().join("scene.xml")).unwrap();
+        let Some(Value::Mesh(mesh)) = scene[scene.shapes[0]].params.get("mesh") else { panic!() };
+        assert_eq!((mesh.positions.len(), mesh.normals.len()), (vertices, vertices), "{angle} degrees");
+        let [warning] = &report.warnings[..] else { panic!("{:?}", report.warnings) };
+        assert!(warning.message.ends_with("t.obj`: line 9: a face of fewer than three corners is left out"));
+    }
 }
 
 #[test]
