@@ -129,6 +129,11 @@ impl Transform {
         v.truncate().to_array()
     }
 
+    /// A vector in double precision.
+    pub fn vector_f64(&self, v: [f64; 3]) -> [f64; 3] {
+        self.exact.transform_vector3(DVec3::from_array(v)).to_array()
+    }
+
     /// A vector.
     #[inline]
     pub fn vector(&self, v: Vector3) -> Vector3 {

@@ -4,7 +4,7 @@
 //! [Woop, Benthin and Wald 2013] "Watertight Ray/Triangle Intersection", JCGT 2(1).
 
 use aureole_math::{Ray, gamma};
-use glam::Vec4;
+use glam::{DVec3, Vec4};
 
 use super::{Block, FoundHits, Hits, LANES, MovingBlock, TriangleTest, corners, moving, one_triangle};
 use crate::bvh::{PACKET, Packet};
@@ -160,7 +160,12 @@ fn intersect<const N: usize, F: Floats<N>>(
         return Hits::none(shear[0]);
     }
     let bound = error_bound(edges, [x0, x1, x2], [y0, y1, y2], z, inv);
-    inside &= bound.less(t).bits();
+    let near = inside & !bound.less(t).bits();
+    if near != 0 {
+        let arrays = |v: [F; 3]| [v[0].to_array(), v[1].to_array(), v[2].to_array()];
+        let corners = [arrays(a), arrays(b), arrays(c)];
+        inside &= !near | exactly_ahead(&corners, &arrays(origin), &arrays(shear), near);
+    }
     Hits { mask: inside, t, u: v * inv, v: w * inv }
 }
 
@@ -202,8 +207,30 @@ fn exact_edges<const N: usize>(
     edges
 }
 
-/// How large the ray parameter of a point on the triangle's plane may come out by rounding alone: a ray that starts on
-/// the triangle must not hit it again.
+/// Which of some triangles that are as near as rounding goes lie ahead of the ray, in double precision. A ray that starts on a
+/// triangle is kept off it, by as much as that one's points are rounded, and must not hit it again; the one beside it at an edge
+/// it must not miss, or light leaks into closed bodies.
+#[cold]
+#[inline(never)]
+fn exactly_ahead<const N: usize>(
+    corners: &[[[f32; N]; 3]; 3],
+    origin: &[[f32; N]; 3],
+    shear: &[[f32; N]; 3],
+    which: u32,
+) -> u32 {
+    let mut ahead = 0;
+    for i in (0..N).filter(|i| which >> i & 1 != 0) {
+        let at = |v: &[[f32; N]; 3]| DVec3::new(v[0][i].into(), v[1][i].into(), v[2][i].into());
+        let [a, b, c] = [0, 1, 2].map(|k| at(&corners[k]) - at(origin));
+        let n = (b - a).cross(c - a);
+        let shear = at(shear);
+        let along = n.dot(DVec3::new(shear.x, shear.y, 1.0)) * shear.z;
+        ahead |= u32::from(n.dot(a) * along > 0.0) << i;
+    }
+    ahead
+}
+
+/// How large the ray parameter of a point on the triangle's plane may come out by rounding alone.
 ///
 /// # References
 /// [PBRT4] section 6.8.7, for sheared vertices and edge functions.

@@ -35,7 +35,7 @@ pub struct Area {
     power: f32,
     /// Whether each triangle (patch, piece ...) of the shape has it.
     power_of_each: bool,
-    /// The factor that does it, once its shape and texture can be asked.
+    /// The factor that does it, per area of what has that power, once its shape and texture can be asked.
     scale: OnceLock<f32>,
     /// Where the shape is, if it is in a group that an instance places.
     place: Option<Arc<Place>>,
@@ -157,14 +157,21 @@ impl Area {
         Self { shape, source, power: 0.0, power_of_each: false, scale, place, cut }
     }
 
-    /// Radiance from a point with normal `ng`, towards a direction at a cosine to it.
+    /// Radiance from a point of a primitive with normal `ng`, towards a direction at a cosine to it.
     #[inline]
-    fn radiance(&self, at: &LightContext<'_>, p: Point3, ng: Vector3, uv: Point2, cos: f32) -> Spectrum {
+    fn radiance(
+        &self,
+        at: &LightContext<'_>,
+        (p, primitive): (Point3, u32),
+        ng: Vector3,
+        uv: Point2,
+        cos: f32,
+    ) -> Spectrum {
         let texture = TextureContext::at_uv(at.textures, at.wavelengths, uv);
         match self.source {
             Source::Texture { radiance, two_sided } if cos > 0.0 || two_sided => {
                 let radiance = texture.spectrum(radiance);
-                if self.power > 0.0 { radiance * self.scale(at) } else { radiance }
+                if self.power > 0.0 { radiance * self.scale(at, primitive) } else { radiance }
             }
             Source::Texture { .. } => Spectrum::ZERO,
             Source::Material(material) => {
@@ -194,16 +201,21 @@ impl Area {
         Self { scale: OnceLock::new(), place: Some(Arc::new(Place::new(world_from_group))), ..self.clone() }
     }
 
-    fn unscaled_power(&self, at: &LightContext<'_>) -> f32 {
+    /// Power per unit area before it is scaled.
+    fn unscaled_exitance(&self, at: &LightContext<'_>) -> f32 {
         let mean = match self.source {
             Source::Texture { radiance, two_sided } => {
                 at.textures[radiance].mean(at.textures) * if two_sided { 2.0 } else { 1.0 }
             }
             Source::Material(_) => self.mean_of_material(at),
         };
+        luminance(mean.rgb()) * PI
+    }
+
+    /// The area of the shape where it is.
+    fn area(&self, at: &LightContext<'_>) -> f32 {
         let shape = &at.shapes[self.shape];
-        let area = self.place.as_ref().map_or_else(|| shape.area(), |place| place.area(shape));
-        luminance(mean.rgb()) * area * PI
+        self.place.as_ref().map_or_else(|| shape.area(), |place| place.area(shape))
     }
 
     /// Mean radiance of both sides together, over uv, at a middling angle.
@@ -212,7 +224,9 @@ impl Area {
         let grid = |i: usize| (i as f32 + 0.5) / SIDE as f32;
         let place = |i: usize| Point2::new(grid(i % SIDE), grid(i / SIDE));
         let sum: Spectrum = (0..SIDE * SIDE)
-            .flat_map(|i| [0.6, -0.6].map(|cos| self.radiance(at, Point3::ORIGIN, Vector3::Z, place(i), cos)))
+            .flat_map(|i| {
+                [0.6, -0.6].map(|cos| self.radiance(at, (Point3::ORIGIN, 0), Vector3::Z, place(i), cos))
+            })
             .sum();
         sum / (SIDE * SIDE) as f32
     }
@@ -223,8 +237,13 @@ impl Area {
         self.power * count as f32
     }
 
-    fn scale(&self, at: &LightContext<'_>) -> f32 {
-        *self.scale.get_or_init(|| self.wanted_power(at) / self.unscaled_power(at).max(f32::MIN_POSITIVE))
+    fn scale(&self, at: &LightContext<'_>, primitive: u32) -> f32 {
+        let shape = &at.shapes[self.shape];
+        let per_area = *self.scale.get_or_init(|| {
+            let stretch = self.area(at) / shape.area();
+            self.power / (self.unscaled_exitance(at) * stretch).max(f32::MIN_POSITIVE)
+        });
+        per_area / if self.power_of_each { shape.primitive_area(primitive) } else { shape.area() }
     }
 }
 
@@ -237,7 +256,8 @@ impl LightOps for Area {
             Some(place) => place.sample(shape, reference, u)?,
         };
         let wi = (drawn.p - reference).try_normalized()?;
-        let mut radiance = self.radiance(at, drawn.p, drawn.ng, drawn.uv, -drawn.ng.dot(wi));
+        let mut radiance =
+            self.radiance(at, (drawn.p, drawn.primitive), drawn.ng, drawn.uv, -drawn.ng.dot(wi));
         if self.cut != Cut::Whole {
             radiance *= self.share(at, &drawn);
         }
@@ -268,10 +288,10 @@ impl LightOps for Area {
 
     #[inline]
     fn emitted(&self, at: &LightContext<'_>, surface: &SurfacePoint, w: Vector3) -> Spectrum {
-        self.radiance(at, surface.p, surface.ng, surface.uv, surface.ng.dot(w))
+        self.radiance(at, (surface.p, surface.primitive), surface.ng, surface.uv, surface.ng.dot(w))
     }
 
     fn power(&self, at: &LightContext<'_>, _: &Bounds3) -> f32 {
-        if self.power > 0.0 { self.wanted_power(at) } else { self.unscaled_power(at) }
+        if self.power > 0.0 { self.wanted_power(at) } else { self.unscaled_exitance(at) * self.area(at) }
     }
 }

@@ -7,6 +7,7 @@
 //! | `tint` | spectrum | 1 | another factor |
 //! | `illuminance` | float | 0 | if positive: `scale` is relative to this irradiance of a plane that faces the light's +Z |
 //! | `mapping` | string | latlong | `latlong` (+Y up, the left border towards −Z) or `equal_area` (pbrt-v4, +Z up) |
+//! | `filter` | string | bilinear | between texels: `bilinear`, or the `nearest` one (pbrt) |
 //! | `world_from_light` | transform | identity | |
 
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
@@ -27,6 +28,13 @@ enum Mapping {
     LatLong,
     /// Clarberg's equal-area square.
     EqualArea,
+}
+
+/// What is seen between texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Filter {
+    Bilinear,
+    Nearest,
 }
 
 /// A place on the picture seen in a direction, and back.
@@ -79,6 +87,7 @@ impl Mapping {
 pub struct EnvironmentMap {
     picture: Arc<Bitmap>,
     mapping: Mapping,
+    filter: Filter,
     scale: PreparedSpectrum,
     world_from_light: Transform,
     light_from_world: Transform,
@@ -100,6 +109,7 @@ impl Element for EnvironmentMap {
             doc: "if positive: the irradiance of a plane that faces +Z, before `scale`",
         },
         ParamDoc { name: "mapping", ty: "string", default: "latlong", doc: "`latlong` or `equal_area`" },
+        ParamDoc { name: "filter", ty: "string", default: "bilinear", doc: "`bilinear` or `nearest`" },
         ParamDoc { name: "world_from_light", ty: "transform", default: "identity", doc: "turns the picture" },
     ];
 
@@ -111,9 +121,17 @@ impl Element for EnvironmentMap {
             wanted: "a picture file".into(),
             at: Span::NONE,
         })?;
-        let picture = resolver.bitmap(&path, Encoding::Auto, at)?;
+        Self::of(resolver.bitmap(&path, Encoding::Auto, at)?, params)
+    }
+}
+
+impl EnvironmentMap {
+    /// Surroundings from pixels, with all parameters but the file's name.
+    pub(super) fn of(picture: Arc<Bitmap>, params: &mut Params) -> Result<Self, SceneError> {
         let mapping =
             params.one_of("mapping", &[("latlong", Mapping::LatLong), ("equal_area", Mapping::EqualArea)])?;
+        let filter =
+            params.one_of("filter", &[("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)])?;
         let tint = params.spectrum("tint", 1.0)?.to_rgb(SpectrumRole::Illuminant);
         let mut scale = params.float_in("scale", 1.0, 0.0, f32::INFINITY)?;
         let illuminance = params.float("illuminance", 0.0)?;
@@ -123,17 +141,15 @@ impl Element for EnvironmentMap {
         let tinted = aureole_spectrum::SpectrumSource::Rgb(tint.map(|c| c * scale));
         Ok(Self::new(
             picture,
-            mapping,
+            (mapping, filter),
             tinted.prepare(SpectrumRole::Illuminant),
             params.transform("world_from_light")?,
         ))
     }
-}
 
-impl EnvironmentMap {
     fn new(
         picture: Arc<Bitmap>,
-        mapping: Mapping,
+        (mapping, filter): (Mapping, Filter),
         scale: PreparedSpectrum,
         world_from_light: Transform,
     ) -> Self {
@@ -141,6 +157,7 @@ impl EnvironmentMap {
         let mut this = Self {
             picture,
             mapping,
+            filter,
             scale,
             world_from_light,
             light_from_world,
@@ -169,6 +186,10 @@ impl EnvironmentMap {
                 rows[below + 1] += 0.25 * fraction;
             }
             for x in 0..w {
+                if filter == Filter::Nearest {
+                    weights[y * w + x] = luminance(this.picture.rgb(x, y)).max(0.0) * stretch;
+                    continue;
+                }
                 let parts = rows.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
                 let sum: f32 = parts.map(|(j, weight)| weight * along(x as i64, first + j as i64)).sum();
                 weights[y * w + x] = sum.max(0.0) * stretch;
@@ -193,8 +214,12 @@ impl EnvironmentMap {
         if self.mapping == Mapping::LatLong { v * (h - 1.0) } else { v * h - 0.5 }
     }
 
-    /// The interpolated picture.
+    /// The picture at a place.
     fn lookup(&self, uv: Point2) -> Spectrum {
+        if self.filter == Filter::Nearest {
+            let (x, y) = (uv.x * self.picture.width() as f32, uv.y * self.picture.height() as f32);
+            return Spectrum::from_rgb(self.texel(x as i64, y as i64));
+        }
         let (x, y) = (uv.x * self.picture.width() as f32 - 0.5, self.row(uv.y));
         let (x0, y0) = (x.floor(), y.floor());
         let (fx, fy) = (x - x0, y - y0);
@@ -202,9 +227,20 @@ impl EnvironmentMap {
         texel(0, 0).lerp(texel(1, 0), fx).lerp(texel(0, 1).lerp(texel(1, 1), fx), fy)
     }
 
-    /// Radiance along `w` as RGB, for tables of it.
-    pub(super) fn picture_radiance(&self, w: Vector3) -> Spectrum {
-        self.lookup(self.mapping.uv(self.local(w))) * self.scale.eval(&Wavelengths::RGB)
+    /// The picture along `w`, before it is scaled, for tables of it.
+    pub(super) fn picture_along(&self, w: Vector3) -> Spectrum {
+        self.lookup(self.mapping.uv(self.local(w)))
+    }
+
+    /// What the picture is scaled by.
+    pub(super) fn strength(&self, wavelengths: &Wavelengths) -> Spectrum {
+        self.scale.eval(wavelengths)
+    }
+
+    /// Texels across, where the nearest is seen; from then on what lies between them is interpolated.
+    pub(super) fn resample(&mut self) -> Option<usize> {
+        let is_nearest = std::mem::replace(&mut self.filter, Filter::Bilinear) == Filter::Nearest;
+        is_nearest.then(|| self.picture.width())
     }
 
     fn local(&self, w: Vector3) -> Vector3 {

@@ -6,11 +6,13 @@
 //! | `indices` | ints | 0 1 2 3 | four vertices a patch: (u, v) = (0,0), (1,0), (0,1), (1,1) |
 //! | `normals` | floats | | three numbers a vertex |
 //! | `uvs` | floats | | two numbers a vertex |
+//! | `drawn` | string | by_area | where it shines, points are drawn `by_area`, or of `each_alike` of its patches |
 //!
 //! References: [Reshetov 2019] "Cool Patches: A Geometric Approach to Ray/Bilinear Patch Intersections", Ray Tracing Gems.
 
 use aureole_desc::{ParamDoc, Params, SceneError, Span};
 use aureole_math::{Bounds3, Discrete, Normal3, Point2, Point3, Ray, Vector3, gamma};
+use glam::DVec3;
 
 use super::{Geometry, Placement, ShapeHit, ShapeOps, ShapeSample, SurfacePoint};
 use crate::{Element, Resolver};
@@ -22,7 +24,9 @@ pub struct BilinearMesh {
     normals: Vec<Vector3>,
     uvs: Vec<Point2>,
     patches: Vec<[u32; 4]>,
-    by_area: Discrete,
+    /// Which patches points are drawn from: in proportion to their area, or all alike.
+    drawn: Discrete,
+    area: f32,
     orientation: f32,
 }
 
@@ -66,6 +70,69 @@ impl BilinearMesh {
         Point2::new(blend(a.x, b.x, c.x, d.x), blend(a.y, b.y, c.y, d.y))
     }
 
+    /// Derivatives of position by the texture coordinates, which need not be the patch's own parameters.
+    fn derivatives(&self, patch: usize, [u, v]: [f32; 2], point: &PatchPoint) -> [Vector3; 2] {
+        let own = [point.du, point.dv];
+        if self.uvs.is_empty() {
+            return own;
+        }
+        let [a, b, c, d] = self.patches[patch].map(|i| self.uvs[i as usize]);
+        let by_u = (b - a) * (1.0 - v) + (d - c) * v;
+        let by_v = (c - a) * (1.0 - u) + (d - b) * u;
+        let inv = 1.0 / (by_u.x * by_v.y - by_u.y * by_v.x);
+        let by_uv =
+            [(point.du * by_v.y - point.dv * by_u.y) * inv, (point.dv * by_u.x - point.du * by_v.x) * inv];
+        if by_uv.iter().all(|d| d.is_finite()) { by_uv } else { own }
+    }
+
+    /// The geometric normal on the side of vertex normals.
+    fn outward(&self, patch: usize, u: f32, v: f32, point: &PatchPoint) -> Vector3 {
+        let ng = self.normal(point);
+        if self.normals.is_empty() {
+            return ng;
+        }
+        ng.face_forward(mix(self.patches[patch].map(|i| self.normals[i as usize]), u, v))
+    }
+
+    /// The error of points of a patch. It is the same along all axes: where all corners lie in a plane of zero coordinates, none
+    /// of them is rounded, but rays that meet the patch are.
+    fn error(&self, patch: usize) -> Vector3 {
+        let corners = self.corners(patch);
+        let largest = corners.iter().map(|c| c.abs().max_element()).fold(0.0, f32::max);
+        Vector3::splat(largest * gamma(8))
+    }
+
+    /// Where the line of a ray meets a patch, in double precision, so that rounding leaves no gaps between patches that share an
+    /// edge and no hits of the patch that a ray leaves [Reshetov 2019].
+    fn crossings(&self, ray: &Ray, patch: usize) -> [Option<ShapeHit>; 2] {
+        /// How far beyond its edges a patch is still met, by its parameters.
+        const SLACK: f64 = 1e-7;
+        let wide = |v: Vector3| DVec3::new(v.x.into(), v.y.into(), v.z.into());
+        let (o, d) = (wide(ray.origin.to_vector()), wide(ray.direction));
+        let [q00, q10, q01, q11] = self.corners(patch).map(|corner| wide(corner) - o);
+        let (across, opposite, start) = (q10 - q00, q11 - q10, q01 - q00);
+        // A quadratic in u: the lines of constant u that the ray meets.
+        let a = q00.cross(d).dot(start);
+        let c = across.cross(q01 - q11).dot(d);
+        let b = q10.cross(d).dot(opposite) - (a + c);
+        let discriminant = b * b - 4.0 * a * c;
+        let s = -0.5 * (b + discriminant.max(0.0).sqrt().copysign(b));
+        let roots = if discriminant < 0.0 { [f64::NAN; 2] } else { [s / c, a / s] };
+        let inside = -SLACK..=1.0 + SLACK;
+        roots.map(|u| {
+            if !inside.contains(&u) {
+                return None;
+            }
+            let u = u.clamp(0.0, 1.0);
+            let (from, along) = (q00.lerp(q10, u), start.lerp(opposite, u));
+            let n = d.cross(along);
+            let m = n.cross(from) / n.length_squared();
+            let v = m.dot(d);
+            let uv = [u as f32, v.clamp(0.0, 1.0) as f32];
+            inside.contains(&v).then(|| ShapeHit { t: m.dot(along) as f32, primitive: patch as u32, uv })
+        })
+    }
+
     fn patch_area(&self, patch: usize) -> f32 {
         const STEPS: usize = 8;
         let middle = |i: usize| (i as f32 + 0.5) / STEPS as f32;
@@ -77,7 +144,7 @@ impl BilinearMesh {
     }
 
     fn pdf_area(&self, patch: usize, point: &PatchPoint) -> f32 {
-        self.by_area.pmf(patch) / point.du.cross(point.dv).length()
+        self.drawn.pmf(patch) / point.du.cross(point.dv).length()
     }
 }
 
@@ -88,6 +155,7 @@ impl Element for BilinearMesh {
         ParamDoc { name: "indices", ty: "ints", default: "0 1 2 3", doc: "four vertices a patch" },
         ParamDoc { name: "normals", ty: "floats", default: "", doc: "three numbers a vertex" },
         ParamDoc { name: "uvs", ty: "floats", default: "", doc: "two numbers a vertex" },
+        super::DRAWN,
     ];
 
     fn from_params(params: &mut Params, _: &mut dyn Resolver) -> Result<Self, SceneError> {
@@ -119,11 +187,15 @@ impl Element for BilinearMesh {
         let patches: Vec<[u32; 4]> =
             indices.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]].map(|i| i as u32)).collect();
         let flip = placement.flip_normals != place.swaps_handedness();
-        let placeholder = Discrete::new([1.0]).ok_or_else(|| invalid("no patches"))?;
+        let drawn = Discrete::new([1.0]).ok_or_else(|| invalid("no patches"))?;
         let orientation = if flip { -1.0 } else { 1.0 };
-        let mut mesh = Self { positions, normals, uvs, patches, by_area: placeholder, orientation };
-        mesh.by_area = Discrete::new((0..mesh.patches.len()).map(|i| mesh.patch_area(i)))
-            .ok_or_else(|| invalid("the patches have no area"))?;
+        let mut mesh = Self { positions, normals, uvs, patches, drawn, area: 0.0, orientation };
+        let areas: Vec<f32> = (0..mesh.patches.len()).map(|i| mesh.patch_area(i)).collect();
+        mesh.area = areas.iter().map(|&area| f64::from(area)).sum::<f64>() as f32;
+        let all_alike = super::draws_all_alike(params)?;
+        let weight = |area: &f32| if all_alike && *area > 0.0 { 1.0 } else { *area };
+        mesh.drawn =
+            Discrete::new(areas.iter().map(weight)).ok_or_else(|| invalid("the patches have no area"))?;
         Ok(mesh)
     }
 }
@@ -139,51 +211,19 @@ impl ShapeOps for BilinearMesh {
     }
 
     fn intersect(&self, ray: &Ray, primitive: u32) -> Option<ShapeHit> {
-        let [q00, q10, q01, q11] = self.corners(primitive as usize);
-        let o = ray.origin.to_vector();
-        let d = ray.direction;
-        let (e10, e11, e00) = (q10 - q00, q11 - q10, q01 - q00);
-        let qn = e10.cross(q01 - q11);
-        let (q00, q10) = (q00 - o, q10 - o);
-        let a = q00.cross(d).dot(e00);
-        let c = qn.dot(d);
-        let b = q10.cross(d).dot(e11) - (a + c);
-        // A quadratic in u: the lines of constant u that the ray meets.
-        let (a, b, c) = (f64::from(a), f64::from(b), f64::from(c));
-        let roots: [f64; 2] = if c == 0.0 {
-            [-a / b, f64::NAN]
-        } else {
-            let discriminant = b * b - 4.0 * a * c;
-            if discriminant < 0.0 {
-                return None;
-            }
-            let s = -(b + discriminant.sqrt().copysign(b)) * 0.5;
-            [s / c, a / s]
-        };
-        let mut best: Option<ShapeHit> = None;
-        for u in roots.map(|u| u as f32).into_iter().filter(|u| (0.0..=1.0).contains(u)) {
-            let (pa, pb) = (q00.lerp(q10, u), e00.lerp(e11, u));
-            let n = d.cross(pb);
-            let det = n.dot(n);
-            let n = n.cross(pa);
-            let (t, v) = (n.dot(pb) / det, n.dot(d) / det);
-            let limit = best.map_or(ray.t_max, |hit| hit.t);
-            if (0.0..=1.0).contains(&v) && t > ray.t_min && t < limit {
-                best = Some(ShapeHit { t, primitive, uv: [u, v] });
-            }
-        }
-        best
+        let hits = self.crossings(ray, primitive as usize);
+        let is_there = |hit: &ShapeHit| hit.t > ray.t_min && hit.t < ray.t_max;
+        hits.into_iter().flatten().filter(is_there).min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
     fn surface(&self, _: &Ray, hit: &ShapeHit) -> SurfacePoint {
         let patch = hit.primitive as usize;
         let [u, v] = hit.uv;
         let point = self.at(patch, u, v);
-        let largest = self.corners(patch).iter().fold(Vector3::ZERO, |m, c| m.max(c.abs()));
-        // The patch's own equation is solved in single precision: its error is that of a few more operations.
-        let error = largest * gamma(16);
         let mut ng = self.normal(&point);
-        let mut surface = SurfacePoint::new(point.p, error, ng, self.uv(patch, u, v), point.du, point.dv);
+        let [dp_du, dp_dv] = self.derivatives(patch, hit.uv, &point);
+        let uv = self.uv(patch, u, v);
+        let mut surface = SurfacePoint::new(point.p, self.error(patch), ng, uv, dp_du, dp_dv);
         if !self.normals.is_empty() {
             let n = mix(self.patches[patch].map(|i| self.normals[i as usize]), u, v);
             if let Some(n) = n.try_normalized() {
@@ -195,28 +235,40 @@ impl ShapeOps for BilinearMesh {
     }
 
     fn area(&self) -> f32 {
-        self.by_area.sum()
+        self.area
+    }
+
+    fn primitive_area(&self, primitive: u32) -> f32 {
+        self.patch_area(primitive as usize)
     }
 
     fn sample_area(&self, u: Point2) -> Option<ShapeSample> {
-        let choice = self.by_area.sample(u.x);
+        let choice = self.drawn.sample(u.x);
         let point = self.at(choice.index, choice.u, u.y);
         let pdf = self.pdf_area(choice.index, &point);
-        let error = point.p.to_vector().abs() * gamma(16);
-        let ng = self.normal(&point);
         pdf.is_finite().then(|| ShapeSample {
             p: point.p,
-            error,
-            ng,
+            error: self.error(choice.index),
+            ng: self.outward(choice.index, choice.u, u.y, &point),
             uv: self.uv(choice.index, choice.u, u.y),
+            primitive: choice.index as u32,
             pdf,
         })
     }
 
     fn pdf_towards(&self, reference: Point3, wi: Vector3, surface: &SurfacePoint) -> f32 {
         let cos = wi.abs_dot(surface.ng);
-        let stretch = surface.dp_du.cross(surface.dp_dv).length();
-        let pdf_area = self.by_area.pmf(surface.primitive as usize) / stretch;
+        let patch = surface.primitive as usize;
+        // The patch's own parameters, found again where the ray meets it.
+        let far = |hit: &ShapeHit| {
+            let [u, v] = hit.uv;
+            (self.at(patch, u, v).p - surface.p).length_squared()
+        };
+        let hits = self.crossings(&Ray::new(reference, wi), patch);
+        let Some(hit) = hits.into_iter().flatten().min_by(|a, b| far(a).total_cmp(&far(b))) else {
+            return 0.0;
+        };
+        let pdf_area = self.pdf_area(patch, &self.at(patch, hit.uv[0], hit.uv[1]));
         if cos > 0.0 { pdf_area * (surface.p - reference).length_squared() / cos } else { 0.0 }
     }
 

@@ -124,7 +124,7 @@ impl ShapeOps for Cylinder {
     fn sample_area(&self, u: Point2) -> Option<ShapeSample> {
         let n = self.normal_at(u.x);
         let (p, error) = self.space.place(Point3::new(n.x, n.y, u.y));
-        Some(ShapeSample { p, error, ng: self.space.normal(n), uv: u, pdf: self.pdf_area(n) })
+        Some(ShapeSample { p, error, ng: self.space.normal(n), uv: u, primitive: 0, pdf: self.pdf_area(n) })
     }
 
     fn pdf_towards(&self, reference: Point3, wi: Vector3, surface: &SurfacePoint) -> f32 {

@@ -142,6 +142,6 @@ impl ShapeOps for Disk {
         let (sin, cos) = phi.sin_cos();
         let (p, error) = self.space.place(Point3::new(r * cos, r * sin, self.height));
         let ng = self.space.normal(Vector3::Z);
-        Some(ShapeSample { p, error, ng, uv: self.coordinates(r, phi), pdf: 1.0 / self.area() })
+        Some(ShapeSample { p, error, ng, uv: self.coordinates(r, phi), primitive: 0, pdf: 1.0 / self.area() })
     }
 }

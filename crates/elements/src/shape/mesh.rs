@@ -4,6 +4,8 @@
 //! |---|---|---|---|
 //! | `mesh` | mesh | | positions, indices, and optionally normals, texture coordinates and attributes |
 //! | `face_normals` | bool | false | ignore vertex normals |
+//! | `default_uvs` | string | barycentric | of each triangle where the mesh has none: `barycentric` (0,0) (1,0) (0,1), or `half_square` (0,0) (1,0) (1,1), which tangents follow too |
+//! | `drawn` | string | by_area | where it shines, points are drawn `by_area`, or of `each_alike` of its triangles |
 //! | `subdivision`, `levels`, `crease_edges`, `crease_sharpness` | | | divide the faces first: `loop` or `catmull_clark` |
 //! | `displacement`, `edge_length` | | | then move the surface by a texture |
 //!
@@ -29,12 +31,23 @@ pub struct TriangleMesh {
     indices: Arc<[[u32; 3]]>,
     normals: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
+    default_uvs: DefaultUvs,
     attributes: Vec<Attribute>,
     area: f32,
-    /// Triangles in proportion to their area; only for meshes that shine.
-    by_area: Option<Arc<Discrete>>,
+    /// Which triangles points are drawn from: in proportion to their area, or all alike; only for meshes that shine.
+    drawn: Option<Arc<Discrete>>,
+    all_alike: bool,
     /// +1, or -1 when the geometric normals are turned round.
     orientation: f32,
+}
+
+/// Texture coordinates of a triangle's vertices where a mesh has none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum DefaultUvs {
+    /// Of the unit triangle (Mitsuba).
+    Barycentric,
+    /// Of half the unit square (pbrt).
+    HalfSquare,
 }
 
 /// Area over squared distance from which drawing by solid angle is worth its time. On a Cornell box, whose lamp covers 0.04
@@ -87,21 +100,41 @@ impl TriangleMesh {
             indices: mesh.indices.as_slice().into(),
             normals,
             uvs: mesh.uvs.clone(),
+            default_uvs: DefaultUvs::Barycentric,
             attributes: mesh.attributes.clone(),
             area: 0.0,
-            by_area: None,
+            drawn: None,
+            all_alike: false,
             orientation,
         };
-        let areas =
-            |this: &Self| (0..this.indices.len()).map(|i| this.cross(i).length() * 0.5).collect::<Vec<_>>();
+        let areas = |this: &Self| (0..this.indices.len()).map(|i| this.triangle_area(i)).collect::<Vec<_>>();
+        let areas = areas(&this);
+        this.area = areas.iter().map(|&a| f64::from(a)).sum::<f64>() as f32;
         if shines {
-            let areas = areas(&this);
-            this.area = areas.iter().map(|&a| f64::from(a)).sum::<f64>() as f32;
-            this.by_area = Discrete::new(areas).map(Arc::new);
-        } else {
-            this.area = areas(&this).iter().map(|&a| f64::from(a)).sum::<f64>() as f32;
+            this.drawn = Discrete::new(areas).map(Arc::new);
         }
         Ok(this)
+    }
+
+    /// Draws points from each triangle alike that has an area.
+    fn draw_all_alike(&mut self) {
+        let weights = (0..self.indices.len()).map(|i| if self.triangle_area(i) > 0.0 { 1.0 } else { 0.0 });
+        self.drawn = Discrete::new(weights).map(Arc::new);
+        self.all_alike = true;
+    }
+
+    fn triangle_area(&self, triangle: usize) -> f32 {
+        0.5 * self.cross(triangle).length()
+    }
+
+    /// Density per unit area of points that are drawn from a triangle.
+    #[inline]
+    fn pdf_area(&self, triangle: usize) -> f32 {
+        if self.all_alike {
+            self.probability(triangle) / self.triangle_area(triangle)
+        } else {
+            1.0 / self.area
+        }
     }
 
     /// Vertices of a triangle.
@@ -119,11 +152,12 @@ impl TriangleMesh {
         (b - a).cross(c - a)
     }
 
-    /// Texture coordinates of a triangle's vertices; the unit triangle where the mesh has none.
+    /// Texture coordinates of a triangle's vertices.
     #[inline]
     fn triangle_uvs(&self, primitive: usize) -> [Point2; 3] {
         if self.uvs.is_empty() {
-            [Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(0.0, 1.0)]
+            let last = if self.default_uvs == DefaultUvs::Barycentric { 0.0 } else { 1.0 };
+            [Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(last, 1.0)]
         } else {
             let [i, j, k] = self.indices[primitive];
             let at = |i: u32| Point2::from(self.uvs[i as usize]);
@@ -166,7 +200,7 @@ impl TriangleMesh {
             (1, [at.x, at.y - at.x, 1.0 - at.y])
         };
         let (p, error, uv) = self.interpolate(triangle, b);
-        ShapeSample { p, error, ng: self.outward(triangle), uv, pdf: 0.0 }
+        ShapeSample { p, error, ng: self.outward(triangle), uv, primitive: triangle as u32, pdf: 0.0 }
     }
 
     /// The geometric normal of a triangle as a whole.
@@ -181,7 +215,7 @@ impl TriangleMesh {
 
     /// The probability that a triangle is drawn.
     fn probability(&self, triangle: usize) -> f32 {
-        self.by_area.as_ref().map_or(0.0, |by_area| by_area.pmf(triangle))
+        self.drawn.as_ref().map_or(0.0, |drawn| drawn.pmf(triangle))
     }
 
     /// What a triangle covers around a point that is so near that it should be drawn by that.
@@ -219,7 +253,7 @@ impl TriangleMesh {
     fn derivatives(&self, primitive: usize, ng: Vector3) -> [Vector3; 2] {
         let [p0, p1, p2] = self.triangle(primitive);
         let (dp02, dp12) = (p0 - p2, p1 - p2);
-        if !self.uvs.is_empty() {
+        if !self.uvs.is_empty() || self.default_uvs == DefaultUvs::HalfSquare {
             let [t0, t1, t2] = self.triangle_uvs(primitive);
             let found = by_uv([dp02, dp12], [t0 - t2, t1 - t2]);
             if let Some([dp_du, dp_dv]) = found.filter(|[du, dv]| du.cross(*dv).length_squared() > 0.0) {
@@ -249,6 +283,13 @@ impl Element for TriangleMesh {
             doc: "positions, indices, and optionally normals, uvs, attributes",
         },
         ParamDoc { name: "face_normals", ty: "bool", default: "false", doc: "ignore vertex normals" },
+        ParamDoc {
+            name: "default_uvs",
+            ty: "string",
+            default: "barycentric",
+            doc: "of triangles where the mesh has none: `barycentric` or `half_square`",
+        },
+        super::DRAWN,
         Refinement::SUBDIVISION,
         Refinement::LEVELS,
         Refinement::CREASE_EDGES,
@@ -272,6 +313,13 @@ impl Element for TriangleMesh {
         if params.bool("face_normals", false)? {
             built.normals.clear();
         }
+        if super::draws_all_alike(params)? && shines {
+            built.draw_all_alike();
+        }
+        built.default_uvs = params.one_of(
+            "default_uvs",
+            &[("barycentric", DefaultUvs::Barycentric), ("half_square", DefaultUvs::HalfSquare)],
+        )?;
         Ok(built)
     }
 }
@@ -329,28 +377,40 @@ impl ShapeOps for TriangleMesh {
         self.area
     }
 
+    fn primitive_area(&self, primitive: u32) -> f32 {
+        self.triangle_area(primitive as usize)
+    }
+
     fn sample_area(&self, u: Point2) -> Option<ShapeSample> {
-        let choice = self.by_area.as_ref()?.sample(u.x);
+        let choice = self.drawn.as_ref()?.sample(u.x);
         let b = warp::square_to_triangle(Point2::new(choice.u, u.y));
         let (p, error, uv) = self.interpolate(choice.index, [1.0 - b.x - b.y, b.x, b.y]);
-        Some(ShapeSample { p, error, ng: self.outward(choice.index), uv, pdf: 1.0 / self.area })
+        let (ng, primitive) = (self.outward(choice.index), choice.index as u32);
+        Some(ShapeSample { p, error, ng, uv, primitive, pdf: self.pdf_area(choice.index) })
     }
 
     fn sample_towards(&self, reference: Point3, u: Point2) -> Option<ShapeSample> {
-        let choice = self.by_area.as_ref()?.sample(u.x);
+        let choice = self.drawn.as_ref()?.sample(u.x);
         let seen = self.seen_from(reference, choice.index);
         let Some(seen) = seen else { return self.sample_area(u)?.into_solid_angle(reference) };
         let w = seen.sample(Point2::new(choice.u, u.y))?;
         let (p, error, uv) = self.interpolate(choice.index, self.barycentric(choice.index, reference, w)?);
         let pdf = self.probability(choice.index) / seen.solid_angle();
-        Some(ShapeSample { p, error, ng: self.outward(choice.index), uv, pdf })
+        Some(ShapeSample {
+            p,
+            error,
+            ng: self.outward(choice.index),
+            uv,
+            primitive: choice.index as u32,
+            pdf,
+        })
     }
 
     fn pdf_towards(&self, reference: Point3, wi: Vector3, surface: &SurfacePoint) -> f32 {
         let triangle = surface.primitive as usize;
         match self.seen_from(reference, triangle) {
             Some(seen) => self.probability(triangle) / seen.solid_angle(),
-            None => super::pdf_of_area(self.area, reference, wi, surface),
+            None => super::pdf_of_area(1.0 / self.pdf_area(triangle), reference, wi, surface),
         }
     }
 
@@ -380,6 +440,9 @@ macro_rules! delegate_to_mesh {
             }
             fn area(&self) -> f32 {
                 self.0.area()
+            }
+            fn primitive_area(&self, primitive: u32) -> f32 {
+                self.0.primitive_area(primitive)
             }
             fn sample_area(&self, u: Point2) -> Option<ShapeSample> {
                 self.0.sample_area(u)

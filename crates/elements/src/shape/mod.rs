@@ -94,7 +94,12 @@ pub trait ShapeOps: Debug + Send + Sync {
         f32::INFINITY
     }
 
-    /// A point drawn uniformly by area. `None` where that is not possible.
+    /// The area of a triangle, patch or part.
+    fn primitive_area(&self, _primitive: u32) -> f32 {
+        self.area() / self.primitive_count() as f32
+    }
+
+    /// A point drawn by area, uniformly unless the shape was asked for something else. `None` where that is not possible.
     fn sample_area(&self, _: Point2) -> Option<ShapeSample> {
         None
     }
@@ -174,7 +179,12 @@ impl Shape {
         each_shape!(self, s => s.area())
     }
 
-    /// A point drawn uniformly by area.
+    /// The area of a triangle, patch or part.
+    pub fn primitive_area(&self, primitive: u32) -> f32 {
+        each_shape!(self, s => s.primitive_area(primitive))
+    }
+
+    /// A point drawn by area.
     pub fn sample_area(&self, u: Point2) -> Option<ShapeSample> {
         each_shape!(self, s => s.sample_area(u))
     }
@@ -233,6 +243,18 @@ pub const COMMON_PARAMS: &[aureole_desc::ParamDoc] = &[
         doc: "probability that the surface is there",
     },
 ];
+
+/// Which points of a shape of many primitives light is drawn from.
+pub(crate) const DRAWN: aureole_desc::ParamDoc = aureole_desc::ParamDoc {
+    name: "drawn",
+    ty: "string",
+    default: "by_area",
+    doc: "points are drawn `by_area`, or of `each_alike` of the primitives: for a `power` of each",
+};
+
+pub(crate) fn draws_all_alike(params: &mut aureole_desc::Params) -> Result<bool, aureole_desc::SceneError> {
+    params.one_of("drawn", &[("by_area", false), ("each_alike", true)])
+}
 
 /// Where a shape is, and which side is outside.
 #[derive(Clone, Copy, Debug)]

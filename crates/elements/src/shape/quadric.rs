@@ -26,14 +26,12 @@ impl ObjectSpace {
         }
     }
 
-    /// A ray in object space, in double precision.
+    /// A ray in object space, in double precision: what a single one would round away is more than what keeps rays off the
+    /// surface that they leave.
     #[inline]
     pub(super) fn ray(&self, ray: &Ray) -> ObjectRay {
-        let [o, d] = [
-            self.object_from_world.point(ray.origin).to_vector(),
-            self.object_from_world.vector(ray.direction),
-        ]
-        .map(|v| v.to_array().map(f64::from));
+        let o = self.object_from_world.point_f64(ray.origin.to_array().map(f64::from));
+        let d = self.object_from_world.vector_f64(ray.direction.to_array().map(f64::from));
         ObjectRay { o, d, t_min: f64::from(ray.t_min), t_max: f64::from(ray.t_max) }
     }
 

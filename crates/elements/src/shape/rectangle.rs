@@ -84,6 +84,10 @@ impl ShapeOps for Rectangle {
         self.mesh.area()
     }
 
+    fn primitive_area(&self, primitive: u32) -> f32 {
+        self.mesh.primitive_area(primitive)
+    }
+
     fn sample_area(&self, u: Point2) -> Option<ShapeSample> {
         Some(ShapeSample { pdf: 1.0 / self.mesh.area(), ..self.mesh.sample_square(u) })
     }

@@ -93,7 +93,7 @@ impl Sphere {
 
     fn sample_at(&self, n: Vector3, pdf: f32) -> ShapeSample {
         let (p, error) = self.space.place(n.to_point());
-        ShapeSample { p, error, ng: self.space.normal(n), uv: self.uv(n), pdf }
+        ShapeSample { p, error, ng: self.space.normal(n), uv: self.uv(n), primitive: 0, pdf }
     }
 
     /// Density per unit world area at object normal `n`.

@@ -65,7 +65,7 @@ impl SurfacePoint {
     /// The point in another space.
     pub fn transformed(&self, transform: &Transform) -> Self {
         let normal = |n: Vector3| Vector3::from(transform.normal(n.into())).normalized();
-        let (p, error) = place(transform, self.p, self.error);
+        let (p, error) = place(transform, self.p, self.error + way_back_error(transform, self.p));
         let (dp_du, dp_dv) = (transform.vector(self.dp_du), transform.vector(self.dp_dv));
         let frame = Frame::from_normal_and_tangent(normal(self.frame.n), dp_du);
         let dn_duv = if self.dn_duv == [Vector3::ZERO; 2] {
@@ -87,6 +87,17 @@ fn place(transform: &Transform, p: Point3, error: Vector3) -> (Point3, Vector3) 
     (transform.point(p), Vector3::new(row(0), row(1), row(2)))
 }
 
+/// By how much a ray that leaves the point in the other space may miss its start when it is brought back, by rounding.
+fn way_back_error(transform: &Transform, p: Point3) -> Vector3 {
+    let (rows, back) = (transform.rows(), transform.inverse().rows());
+    let magnitude = |row: &[f64; 4], p: [f32; 3]| {
+        (0..3).map(|j| (row[j] as f32 * p[j]).abs()).sum::<f32>() + row[3].abs() as f32
+    };
+    let there = [0, 1, 2].map(|i| magnitude(&rows[i], p.to_array()));
+    let error = [0, 1, 2].map(|i| magnitude(&back[i], there) * gamma(4));
+    Vector3::from(error)
+}
+
 /// A point drawn from a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeSample {
@@ -98,6 +109,8 @@ pub struct ShapeSample {
     pub ng: Vector3,
     /// Surface parameters.
     pub uv: Point2,
+    /// The triangle, patch or part of the shape.
+    pub primitive: u32,
     /// Density: per unit area from `sample_area`, per steradian from `sample_towards`.
     pub pdf: f32,
 }

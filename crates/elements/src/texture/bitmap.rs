@@ -5,7 +5,7 @@
 //! | `filename` | path | | PNG, JPEG, EXR, HDR, TGA, ... |
 //! | `filter` | string | bilinear | `bilinear`, `nearest`; by what a pixel covers: `trilinear`, `ewa` |
 //! | `max_anisotropy` | float | 8 | of `ewa`: how much longer than wide its ellipse may be |
-//! | `wrap` | string | repeat | beyond the unit square: `repeat`, `mirror`, `clamp`, `black` |
+//! | `wrap` | string | repeat | beyond the unit square: `repeat`, `mirror`, `clamp`, `black`, `octahedral` |
 //! | `encoding` | string | auto | `auto` (by file type), `srgb`, `linear` (raw data), `gamma` |
 //! | `gamma` | float | 2.2 | for `encoding` = `gamma` |
 //! | `channel` | string | color | what is read: `color`; `alpha`; the `first` of the colours; their `mean`; or a `number`: alpha, by the encoding of colours, where the picture has holes, else the mean |
@@ -19,7 +19,8 @@
 //!
 //! `trilinear` and `ewa` read smaller versions of the picture where a pixel of the camera covers more than a texel: the former
 //! by the pixel's longest step, the latter by a Gaussian over its ellipse. What a pixel covers is known from the camera alone,
-//! as if it saw each place directly, also in mirrors; where a texel covers more than a pixel, both are `bilinear`.
+//! as if it saw each place directly, also in mirrors; where a texel covers more than a pixel, `trilinear` is `bilinear`, and the
+//! Gaussian is one texel wide, as in pbrt.
 //!
 //! References: [Williams 1983] "Pyramidal Parametrics"; [Heckbert 1989] "Fundamentals of Texture Mapping and Image Warping".
 
@@ -93,9 +94,9 @@ impl BitmapTexture {
 
     #[inline]
     fn texel_of(&self, b: &Bitmap, x: i64, y: i64) -> [f32; 3] {
-        match (self.wrap.index(x, b.width() as i64), self.wrap.index(y, b.height() as i64)) {
-            (Some(x), Some(y)) => b.rgb(x, y),
-            _ => [0.0; 3],
+        match self.wrap.texel([x, y], [b.width() as i64, b.height() as i64]) {
+            Some([x, y]) => b.rgb(x, y),
+            None => [0.0; 3],
         }
     }
 
@@ -147,7 +148,8 @@ impl BitmapTexture {
             std::mem::swap(&mut long, &mut short);
         }
         let (length, mut breadth) = (long.length(), short.length());
-        if length <= 1.0 || !length.is_finite() {
+        let is_close = length <= 1.0 && (self.filter == Filter::Trilinear || breadth == 0.0);
+        if is_close || !length.is_finite() {
             return self.bilinear(&self.bitmap, p);
         }
         if self.filter == Filter::Trilinear {
@@ -239,7 +241,7 @@ impl Element for BitmapTexture {
             name: "wrap",
             ty: "string",
             default: "repeat",
-            doc: "`repeat`, `mirror`, `clamp` or `black`",
+            doc: "`repeat`, `mirror`, `clamp`, `black` or `octahedral`",
         },
         ParamDoc {
             name: "encoding",
@@ -309,6 +311,7 @@ impl Element for BitmapTexture {
                     ("mirror", Wrap::Mirror),
                     ("clamp", Wrap::Clamp),
                     ("black", Wrap::Black),
+                    ("octahedral", Wrap::Octahedral),
                 ],
             )?,
             mapping: Mapping::from_params(params)?,
@@ -417,17 +420,28 @@ mod tests {
     }
 
     #[test]
-    fn up_close_nothing_is_blurred() {
-        let plain = checker(Filter::Bilinear);
-        for filter in [Filter::Trilinear, Filter::Ewa] {
-            let texture = checker(filter);
-            for i in 0..200 {
-                let uv = Point2::new(0.013 * i as f32, 0.029 * i as f32);
-                let s = 0.9 / 64.0;
-                let steps = [Vector2::new(s, 0.0), Vector2::new(0.0, 0.5 * s)];
-                assert_eq!(value(&texture, uv, Some(steps)), value(&plain, uv, None));
-                assert_eq!(value(&texture, uv, None), value(&plain, uv, None));
-            }
+    fn up_close_trilinear_is_bilinear() {
+        let [plain, texture] = [Filter::Bilinear, Filter::Trilinear].map(checker);
+        for i in 0..200 {
+            let uv = Point2::new(0.013 * i as f32, 0.029 * i as f32);
+            let s = 0.9 / 64.0;
+            let steps = [Vector2::new(s, 0.0), Vector2::new(0.0, 0.5 * s)];
+            assert_eq!(value(&texture, uv, Some(steps)), value(&plain, uv, None));
+            assert_eq!(value(&texture, uv, None), value(&plain, uv, None));
+        }
+    }
+
+    /// In the limit the Gaussian has a radius of one texel around each place: in the middle of a texel that texel alone has
+    /// weight, halfway to the next both have the same, and a third of the way their weights are those of the formula.
+    #[test]
+    fn up_close_an_ellipse_is_a_texel_wide() {
+        let texture = checker(Filter::Ewa);
+        let steps = [Vector2::new(1e-5, 0.0), Vector2::new(0.0, 1e-5)];
+        let at = |x: f32| value(&texture, Point2::new(x / 64.0, 1.0 - 0.5 / 64.0), Some(steps));
+        let weight = |r: f32| (-2.0 * r * r).exp() - (-2.0_f32).exp();
+        let third = weight(1.0 / 3.0) / (weight(1.0 / 3.0) + weight(2.0 / 3.0));
+        for (x, expected) in [(0.5, 0.0), (1.5, 1.0), (1.0, 0.5), (1.5 + 1.0 / 3.0, third)] {
+            assert!((at(x) - expected).abs() < 1e-3, "{x}: {}, expected {expected}", at(x));
         }
     }
 

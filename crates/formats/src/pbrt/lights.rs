@@ -160,30 +160,37 @@ impl Reader<'_, '_> {
         if file.is_some() && given.get("L").is_some() {
             return Err(SceneError::invalid("`L` and `filename` cannot both be given", given.at("L")));
         }
-        let Some(path) = file else {
-            if given.get("portal").is_some() {
-                self.warn(
-                    "a portal guides the light of a picture only: this light has none",
-                    given.at("portal"),
-                );
+        let portal = given.floats("portal")?;
+        match file {
+            None if portal.is_none() => {
+                // Even surroundings of radiance one give a surface π.
+                scale *= illuminance.map_or(1.0, |e| e / PI);
+                params.push("radiance", Value::Spectrum(given.light("L", scale, self)?), at);
+                return Ok("constant");
             }
-            // Even surroundings of radiance one give a surface π.
-            scale *= illuminance.map_or(1.0, |e| e / PI);
-            params.push("radiance", Value::Spectrum(given.light("L", scale, self)?), at);
-            return Ok("constant");
-        };
-        if let Some(illuminance) = illuminance {
-            params.push("illuminance", Value::Float(illuminance), given.at("illuminance"));
+            None => {
+                // To pbrt a picture of one texel, whose illuminance it takes to be 2π times its luminance.
+                if let Some(illuminance) = illuminance {
+                    let one = given.light("L", 1.0, self)?.to_rgb(SpectrumRole::Illuminant);
+                    scale *= illuminance / (2.0 * PI * f64::from(luminance(one).max(f32::MIN_POSITIVE)));
+                }
+                params.push("tint", Value::Spectrum(given.light("L", scale, self)?), given.at("L"));
+            }
+            Some(path) => {
+                if let Some(illuminance) = illuminance {
+                    // pbrt takes the upper half of the picture for the whole sphere: what it shows is twice as bright.
+                    params.push("illuminance", Value::Float(2.0 * illuminance), given.at("illuminance"));
+                }
+                params.push("filename", Value::Path(path), given.at("filename"));
+                params.push("scale", Value::Float(scale), at);
+                params.push("mapping", Value::String("equal_area".into()), at);
+                params.push("filter", Value::String("nearest".into()), at);
+            }
         }
-        params.push("filename", Value::Path(path), given.at("filename"));
-        params.push("scale", Value::Float(scale), at);
-        params.push("mapping", Value::String("equal_area".into()), at);
-        if let Some(corners) = given.floats("portal")? {
-            // Corners are in the world, whatever the current transform is.
-            params.push("portal", Value::Floats(corners.into()), given.at("portal"));
-            return Ok("portal_envmap");
-        }
-        Ok("envmap")
+        let Some(corners) = portal else { return Ok("envmap") };
+        // Corners are in the world, whatever the current transform is.
+        params.push("portal", Value::Floats(corners.into()), given.at("portal"));
+        Ok("portal_envmap")
     }
 
     /// The emission of shapes below an `AreaLightSource`.

@@ -15,6 +15,7 @@ mod materials;
 mod objects;
 mod options;
 mod params;
+mod quads;
 mod shapes;
 mod state;
 mod textures;

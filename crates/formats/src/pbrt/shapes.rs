@@ -10,11 +10,15 @@ use rustc_hash::FxHashMap;
 
 use super::curve;
 use super::params::ParamSet;
+use super::quads::Parts;
 use super::state::Reader;
 use crate::mesh::{MeshFile, ply};
 
 const KINDS: &[&str] =
     &["bilinearmesh", "curve", "cylinder", "disk", "loopsubdiv", "plymesh", "sphere", "trianglemesh"];
+
+/// Texture coordinates of triangles of meshes that have none.
+const DEFAULT_UVS: (&str, &str) = ("default_uvs", "half_square");
 
 impl Reader<'_, '_> {
     pub(super) fn shape(&mut self, kind: &str, given: &ParamSet) -> Result<(), SceneError> {
@@ -42,12 +46,15 @@ impl Reader<'_, '_> {
                 });
             }
         };
-        let is_quadric = matches!(name, "sphere" | "disk" | "cylinder");
-        // For meshes pbrt's normals stay outside when a transform mirrors them, for quadrics they turn round.
-        let flip = self.state.reverse_orientation != (is_quadric && place.swaps_handedness());
         params.push("world_from_object", Value::Transform(place), at);
+        self.surface(given, &mut params, matches!(name, "mesh" | "bilinear_mesh"))?;
+        let is_quadric = matches!(name, "sphere" | "disk" | "cylinder");
+        // For meshes pbrt's normals stay outside when a transform mirrors them, for quadrics they turn round; but not where
+        // points of lamps are drawn, which is what lights a room.
+        let turns = is_quadric && place.swaps_handedness() && !params.has("emission");
+        // The normals of subdivided surfaces are the cross products of tangents that go round the other way.
+        let flip = self.state.reverse_orientation != (turns || kind == "loopsubdiv");
         params.push("flip_normals", Value::Bool(flip), at);
-        self.surface(given, &mut params)?;
         given.finish(&format!("shape `{kind}`"), self.context.report);
         let id = self.add(Family::Shape, name, params, at);
         match &mut self.open_object {
@@ -63,7 +70,12 @@ impl Reader<'_, '_> {
     }
 
     /// Material, emission and cut-out.
-    fn surface(&mut self, given: &ParamSet, params: &mut Params) -> Result<(), SceneError> {
+    fn surface(
+        &mut self,
+        given: &ParamSet,
+        params: &mut Params,
+        has_many_primitives: bool,
+    ) -> Result<(), SceneError> {
         let at = given.span;
         if let Some(alpha) = given.textured_float("alpha", self)? {
             params.push("alpha", alpha, given.at("alpha"));
@@ -78,6 +90,9 @@ impl Reader<'_, '_> {
             } else {
                 let emission = self.area_light(&area_light)?;
                 params.push("emission", Value::Node(emission), area_light.span);
+                if has_many_primitives && self.desc[emission].params.has("power_of") {
+                    params.push("drawn", Value::String("each_alike".into()), area_light.span);
+                }
             }
         }
         let material = match self.state.material {
@@ -120,6 +135,7 @@ impl Reader<'_, '_> {
         let mesh = Mesh { positions, indices, normals: triples("N")?, uvs, ..Mesh::default() };
         mesh.check().map_err(|message| SceneError::invalid(message, at))?;
         params.push("mesh", Value::Mesh(Arc::new(mesh)), at);
+        params.push(DEFAULT_UVS.0, Value::String(DEFAULT_UVS.1.into()), at);
         Ok("mesh")
     }
 
@@ -143,6 +159,7 @@ impl Reader<'_, '_> {
         params.push("subdivision", Value::String("loop".into()), at);
         params.push("levels", Value::Int(given.int("levels", 3)?), given.at("levels"));
         params.push("mesh", Value::Mesh(Arc::new(control)), at);
+        params.push(DEFAULT_UVS.0, Value::String(DEFAULT_UVS.1.into()), at);
         Ok("mesh")
     }
 
@@ -157,6 +174,7 @@ impl Reader<'_, '_> {
         }
         // All files are read at the end, side by side; until then the path stands in for the mesh.
         params.push("mesh", Value::Path(path), given.at("filename"));
+        params.push(DEFAULT_UVS.0, Value::String(DEFAULT_UVS.1.into()), given.span);
         Ok("mesh")
     }
 
@@ -182,16 +200,26 @@ impl Reader<'_, '_> {
             let read = result.map_err(|error| errors.push(error)).ok();
             meshes.push(read.map(|MeshFile { mesh, notes }| (Arc::new(mesh), notes)));
         }
+        let parts: Vec<_> =
+            meshes.iter().map(|read| read.as_ref().and_then(|(mesh, _)| Parts::of(mesh))).collect();
+        let mut patches_of = FxHashMap::default();
         for (id, index, at) in users {
-            if let Some((mesh, notes)) = &meshes[index] {
-                for note in notes {
-                    self.context
-                        .report
-                        .warn(format!("`{}`: {note}", files[index].0.display()), files[index].1);
+            let Some((mesh, notes)) = &meshes[index] else { continue };
+            for note in notes {
+                let message = format!("`{}`: {note}", files[index].0.display());
+                self.context.report.warn(message, files[index].1);
+            }
+            match &parts[index] {
+                // What is displaced is triangles.
+                Some(parts) if !self.desc[id].params.has("displacement") => {
+                    if let Some(patches) = parts.put_into(&mut self.desc, id, at) {
+                        patches_of.insert(id, patches);
+                    }
                 }
-                self.desc[id].params.push("mesh", Value::Mesh(mesh.clone()), at);
+                _ => self.desc[id].params.push("mesh", Value::Mesh(mesh.clone()), at),
             }
         }
+        super::quads::add_beside(&mut self.desc, &patches_of);
         let mut errors = errors.into_iter();
         let first = errors.next();
         self.context.report.errors.extend(errors);

@@ -235,9 +235,10 @@ impl Reader<'_, '_> {
         params.push("max_anisotropy", Value::Float(anisotropy), given.at("maxanisotropy"));
         let wrap = match given.text("wrap")?.unwrap_or("repeat") {
             wrap @ ("repeat" | "clamp" | "black") => wrap,
-            "octahedralsphere" => "clamp",
+            "octahedralsphere" => "octahedral",
             other => {
-                let message = format!("`wrap` is `repeat`, `black` or `clamp`, not `{other}`");
+                let message =
+                    format!("`wrap` is `repeat`, `black`, `clamp` or `octahedralsphere`, not `{other}`");
                 return Err(SceneError::invalid(message, given.at("wrap")));
             }
         };

@@ -2,21 +2,25 @@
 //!
 //! | parameter | type | default | meaning |
 //! |---|---|---|---|
-//! | `filename`, `scale`, `tint`, `illuminance`, `mapping`, `world_from_light` | | | as for `envmap` |
+//! | `filename`, `scale`, `tint`, `illuminance`, `mapping`, `world_from_light` | | | as for `envmap`; without `filename`, white |
+//! | `filter` | string | bilinear | `bilinear` or `nearest`, see below |
 //! | `portal` | floats | | the window's four corners in the world, twelve numbers; its normal p03 × p01 points outwards |
 //!
 //! Light arrives only through the window. The picture is resampled so that straight lines of the world stay straight; what
-//! a point sees of it is then a rectangle, from which directions are drawn.
+//! a point sees of it is then a rectangle, from which directions are drawn. With the filter `nearest` that resampled picture,
+//! with as many cells as there are texels across, is also what is seen, as in pbrt.
 //!
 //! References: [Bitterli et al. 2015] "Portal-Masked Environment Map Sampling"; pbrt-v4's `portal`.
 
 mod windowed;
 
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, PI};
+use std::sync::Arc;
 
 use aureole_desc::{ParamDoc, Params, SceneError};
+use aureole_image::Bitmap;
 use aureole_math::{Bounds3, Point2, Point3, Vector3};
-use aureole_spectrum::{Spectrum, luminance};
+use aureole_spectrum::{Spectrum, Wavelengths, luminance};
 
 use self::windowed::{Window, Windowed};
 use super::{EnvironmentMap, LightContext, LightOps, LightSample};
@@ -31,12 +35,14 @@ pub struct PortalEnvironment {
     /// Along the sides, and outwards.
     axes: [Vector3; 3],
     area: f32,
+    /// The resampled picture, row by row, and its size, where that is what is seen.
+    cells: Option<(Vec<Spectrum>, usize)>,
     distribution: Windowed,
     /// Mean radiance over the directions that can come through.
     mean: f32,
 }
 
-/// Cells along each side of the resampled picture.
+/// Cells along each side of the resampled picture, where it only guides what is drawn.
 const CELLS: usize = 512;
 
 impl Element for PortalEnvironment {
@@ -47,6 +53,7 @@ impl Element for PortalEnvironment {
         ParamDoc { name: "tint", ty: "spectrum", default: "1", doc: "another factor" },
         ParamDoc { name: "illuminance", ty: "float", default: "0", doc: "as for `envmap`" },
         ParamDoc { name: "mapping", ty: "string", default: "latlong", doc: "`latlong` or `equal_area`" },
+        ParamDoc { name: "filter", ty: "string", default: "bilinear", doc: "`bilinear` or `nearest`" },
         ParamDoc { name: "world_from_light", ty: "transform", default: "identity", doc: "turns the picture" },
         ParamDoc { name: "portal", ty: "floats", default: "", doc: "four corners in the world" },
     ];
@@ -68,31 +75,52 @@ impl Element for PortalEnvironment {
             return Err(wrong());
         }
         let axes = [x, y, x.cross(y).normalized()];
-        let sky = EnvironmentMap::from_params(params, resolver)?;
+        let sky = if params.has("filename") {
+            EnvironmentMap::from_params(params, resolver)?
+        } else {
+            EnvironmentMap::of(Arc::new(Bitmap::placeholder([1.0; 3])), params)?
+        };
         Ok(Self::new(sky, [corner(0), corner(2)], axes, area))
     }
 }
 
 impl PortalEnvironment {
-    fn new(sky: EnvironmentMap, corners: [Point3; 2], axes: [Vector3; 3], area: f32) -> Self {
+    fn new(mut sky: EnvironmentMap, corners: [Point3; 2], axes: [Vector3; 3], area: f32) -> Self {
+        let resampled = sky.resample();
+        let size = resampled.unwrap_or(CELLS);
         let empty = Windowed::new(vec![1.0], 1);
-        let mut this = Self { sky, corners, axes, area, distribution: empty, mean: 0.0 };
+        let mut this = Self { sky, corners, axes, area, cells: None, distribution: empty, mean: 0.0 };
+        let scale = this.sky.strength(&Wavelengths::RGB);
         let (mut total, mut steradians) = (0.0, 0.0);
-        let values: Vec<f32> = (0..CELLS * CELLS)
-            .map(|i| {
-                let middle = |k: usize| (k as f32 + 0.5) / CELLS as f32;
-                let (w, density) = this.direction(Point2::new(middle(i % CELLS), middle(i / CELLS)));
-                let value = luminance(this.sky.picture_radiance(w).rgb()).max(0.0);
-                total += f64::from(value / density);
-                steradians += f64::from(1.0 / density);
-                // A floor keeps what lies between the sampled places from being missed.
-                value / density
-            })
-            .collect();
+        let (mut cells, mut values) = (Vec::new(), Vec::new());
+        for i in 0..size * size {
+            let middle = |k: usize| (k as f32 + 0.5) / size as f32;
+            let (w, density) = this.direction(Point2::new(middle(i % size), middle(i / size)));
+            let color = this.sky.picture_along(w);
+            let value = luminance((color * scale).rgb()).max(0.0) / density;
+            total += f64::from(value);
+            steradians += f64::from(1.0 / density);
+            cells.push(color);
+            values.push(value);
+        }
+        // A floor keeps what lies between the sampled places from being missed.
         let floor = 0.01 * total as f32 / values.len() as f32;
-        this.distribution = Windowed::new(values.iter().map(|v| v + floor).collect(), CELLS);
+        this.distribution = Windowed::new(values.iter().map(|v| v + floor).collect(), size);
         this.mean = (total / steradians) as f32;
+        this.cells = resampled.map(|size| (cells, size));
         this
+    }
+
+    /// Radiance along `w`, which is at a place of the resampled picture.
+    fn radiance(&self, w: Vector3, uv: Point2, wavelengths: &Wavelengths) -> Spectrum {
+        let color = match &self.cells {
+            Some((cells, size)) => {
+                let index = |v: f32| ((v * *size as f32) as usize).min(size - 1);
+                cells[index(uv.y) * size + index(uv.x)]
+            }
+            None => self.sky.picture_along(w),
+        };
+        color * self.sky.strength(wavelengths)
     }
 
     /// The direction at a place of the resampled picture, and its area per steradian there.
@@ -134,7 +162,7 @@ impl LightOps for PortalEnvironment {
         let uv = self.distribution.sample(&window, u)?;
         let (wi, density) = self.direction(uv);
         let pdf_omega = self.distribution.pdf(&window, uv) * density;
-        let radiance = self.sky.environment(at, reference, wi);
+        let radiance = self.radiance(wi, uv, &at.wavelengths);
         let is_usable = pdf_omega > 0.0 && pdf_omega.is_finite() && !radiance.is_black();
         is_usable.then_some(LightSample { wi, target: None, radiance, pdf_omega, is_delta: false })
     }
@@ -156,7 +184,7 @@ impl LightOps for PortalEnvironment {
 
     fn environment(&self, at: &LightContext<'_>, reference: Point3, w: Vector3) -> Spectrum {
         match (self.window(reference), self.place(w)) {
-            (Some(window), Some((uv, _))) if window.contains(uv) => self.sky.environment(at, reference, w),
+            (Some(window), Some((uv, _))) if window.contains(uv) => self.radiance(w, uv, &at.wavelengths),
             _ => Spectrum::ZERO,
         }
     }

@@ -327,7 +327,15 @@ impl ShapeOps for Tube {
         let at = self.cubic_point(&curve, local, Self::radial(&curve, local, u.y)?)?;
         let pdf = self.pdf_area(choice.index, at.dp_du, at.dp_dv);
         let uv = Point2::new(u.y, self.v(segment, local));
-        pdf.is_finite().then(|| ShapeSample { p: at.p, error: Self::error(at.p, 0.0), ng: at.ng, uv, pdf })
+        let primitive = segment as u32;
+        pdf.is_finite().then(|| ShapeSample {
+            p: at.p,
+            error: Self::error(at.p, 0.0),
+            ng: at.ng,
+            uv,
+            primitive,
+            pdf,
+        })
     }
 
     fn pdf_towards(&self, reference: Point3, wi: Vector3, surface: &SurfacePoint) -> f32 {
