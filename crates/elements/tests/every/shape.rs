@@ -125,7 +125,18 @@ pub(crate) fn examples(world: &mut World) -> Vec<Example> {
         ("bilinear patches", "bilinear_mesh", {
             params([("positions", Floats(two.into())), ("indices", Ints([0, 1, 2, 3, 1, 4, 3, 5].into()))])
         }),
+        ("turned patches, drawn alike", "bilinear_mesh", {
+            // Their texture coordinates are not their own parameters: sheared and turned.
+            params([("positions", Floats(two.into())), ("indices", Ints([0, 1, 2, 3, 1, 4, 3, 5].into()))])
+                .with("uvs", Floats([0.0, 1.0, 0.1, 0.5, 1.0, 1.2, 1.1, 0.6, 0.2, 0.0, 1.2, 0.0].into()))
+                .with("drawn", word("each_alike"))
+        }),
         ("mesh", "mesh", params([("mesh", Value::Mesh(Arc::new(blob())))])),
+        ("mesh, drawn alike", "mesh", {
+            let bare = Mesh { uvs: Vec::new(), ..blob() };
+            params([("mesh", Value::Mesh(Arc::new(bare))), ("drawn", word("each_alike"))])
+                .with("default_uvs", word("half_square"))
+        }),
         ("faceted mesh", "mesh", {
             params([("mesh", Value::Mesh(Arc::new(blob()))), ("face_normals", Value::Bool(true))])
         }),

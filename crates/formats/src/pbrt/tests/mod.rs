@@ -1,6 +1,7 @@
 //! Directives, parameters and mistakes.
 
 mod semantics;
+mod surfaces;
 
 use aureole_desc::{Report, SceneDesc, SceneError, Sources, Value};
 use aureole_math::{Point3, Transform, Vector3};
