@@ -112,7 +112,7 @@ fn scene(body: &Body, place: &Transform, is_instance: bool) -> Scene {
             if !is_instance {
                 params = params.with("world_from_object", place.clone());
             }
-            desc.add(Node::new(Family::Shape, kind, params, Span::NONE))
+            desc.add(Node::new(Family::Shape, *kind, params, Span::NONE))
         })
         .collect();
     if is_instance {
