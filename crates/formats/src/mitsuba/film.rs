@@ -33,7 +33,7 @@ pub(super) fn film(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<NodeI
     let kind = t.kind(&scope, Family::Film, FILMS)?;
     if scope.object.plugin == "specfilm" {
         t.context.report.warn("`specfilm` is rendered as a film of colours", scope.span());
-        scope.children.retain(|child| child.tag == Tag::Filter);
+        scope.children.retain(|child| !matches!(child.tag, Tag::Spectrum | Tag::Texture));
     }
     scope.default("width", Value::Int(768));
     scope.default("height", Value::Int(576));

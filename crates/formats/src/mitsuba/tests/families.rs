@@ -202,7 +202,7 @@ fn cameras_with_what_hangs_below_them() {
         <sensor type="perspective"><float name="fov" value="30"/><float name="focus_distance" value="9"/><film type="hdrfilm"/></sensor>
         <sensor type="orthographic"/>"#,
     );
-    assert!(warnings.is_empty(), "{warnings:?}");
+    assert!(warnings.iter().all(|warning| warning.contains("first sensor")), "{warnings:?}");
     let shown: Vec<_> = scene.cameras.iter().map(|&id| show(&scene, id)).collect();
     assert_eq!(
         shown,
@@ -228,7 +228,7 @@ fn cameras_beside_each_other_and_on_shapes() {
         </sensor>
         <shape type="disk"><sensor type="irradiancemeter"><film type="hdrfilm"/></sensor></shape>"#,
     );
-    assert!(warnings.is_empty(), "{warnings:?}");
+    assert!(warnings.iter().all(|warning| warning.contains("first sensor")), "{warnings:?}");
     let shown: Vec<_> = scene.cameras.iter().map(|&id| show(&scene, id)).collect();
     // The first one's axis is that of a film of 768 by 576.
     let first = "perspective(fov_axis=x fov=106.26020470831195)";
