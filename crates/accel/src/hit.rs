@@ -35,14 +35,14 @@ pub enum Geometry {
         /// What is repeated.
         level: Arc<World>,
         /// Where.
-        world_from_object: Transform,
+        world_from_object: Arc<Transform>,
     },
     /// Another world that moves.
     MovingInstance {
         /// What is repeated.
         level: Arc<World>,
         /// Where, at which time.
-        world_from_object: Motion,
+        world_from_object: Box<Motion>,
     },
 }
 

@@ -71,7 +71,7 @@ impl World {
                     Geometry::User(boxes) | Geometry::Balls(boxes),
                 ) => (object.clone(), boxes[*primitive as usize]),
                 (Object::Instance { geometry, .. }, Geometry::Instance { level, world_from_object }) => {
-                    let object_from_world = world_from_object.inverse();
+                    let object_from_world = world_from_object.inverse().ray_map();
                     let bounds = world_from_object.bounds(&level.bounds);
                     (
                         Object::Instance { geometry: *geometry, level: level.clone(), object_from_world },
@@ -83,7 +83,7 @@ impl World {
                     Geometry::MovingInstance { level, world_from_object },
                 ) => {
                     let bounds = world_from_object.bounds(&level.bounds);
-                    let motion = Box::new(world_from_object.clone());
+                    let motion = world_from_object.clone();
                     let (geometry, level) = (*geometry, level.clone());
                     (Object::MovingInstance { geometry, level, world_from_object: motion }, bounds)
                 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use aureole_math::{Bounds3, Motion, Point3, Ray, Transform};
+use aureole_math::{Bounds3, Motion, Point3, Ray, RayMap};
 
 use crate::blocks::{Blocks, Meshes};
 use crate::bvh::MAX_ITEMS;
@@ -18,7 +18,7 @@ use crate::{AccelError, Accuracy, Config, Geometry, Hit, Layout, Structure, User
 pub(crate) enum Object {
     User { geometry: u32, primitive: u32 },
     Ball { geometry: u32, primitive: u32 },
-    Instance { geometry: u32, level: Arc<World>, object_from_world: Transform },
+    Instance { geometry: u32, level: Arc<World>, object_from_world: RayMap },
     MovingInstance { geometry: u32, level: Arc<World>, world_from_object: Box<Motion> },
 }
 
@@ -154,7 +154,7 @@ impl World {
                         continue;
                     }
                     boxes.extend(checked(vec![bounds], g)?);
-                    let object_from_world = world_from_object.inverse();
+                    let object_from_world = world_from_object.inverse().ray_map();
                     all.push(Object::Instance { geometry: geometry_id, level, object_from_world });
                 }
                 Geometry::MovingInstance { level, world_from_object } => {
@@ -163,7 +163,6 @@ impl World {
                         continue;
                     }
                     boxes.extend(checked(vec![bounds], g)?);
-                    let world_from_object = Box::new(world_from_object);
                     all.push(Object::MovingInstance { geometry: geometry_id, level, world_from_object });
                 }
             }

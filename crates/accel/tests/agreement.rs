@@ -107,9 +107,11 @@ fn everything_together() {
     let level = Arc::new(inner);
     let instance = |x: f32, degrees: f64| Geometry::Instance {
         level: level.clone(),
-        world_from_object: Transform::translate(Vector3::new(x, 0.1, 0.0))
-            * Transform::rotate(Vector3::new(1.0, 2.0, 0.5), degrees)
-            * Transform::scale(Vector3::splat(0.4)),
+        world_from_object: Arc::new(
+            Transform::translate(Vector3::new(x, 0.1, 0.0))
+                * Transform::rotate(Vector3::new(1.0, 2.0, 0.5), degrees)
+                * Transform::scale(Vector3::splat(0.4)),
+        ),
     };
     let geometries = [soup(200, 0.2, 2), instance(0.0, 20.0), Geometry::User(boxes), instance(0.5, 70.0)];
     agree(&geometries, &Balls(balls), 3000);

@@ -50,7 +50,7 @@ fn stopped(geometries: &[Geometry], time: f32) -> Vec<Geometry> {
             Geometry::Triangles { positions: vertices(keys, time), indices: indices.clone() }
         }
         Geometry::MovingInstance { level, world_from_object } => {
-            Geometry::Instance { level: level.clone(), world_from_object: world_from_object.at(time) }
+            Geometry::Instance { level: level.clone(), world_from_object: world_from_object.at(time).into() }
         }
         still => still.clone(),
     };
@@ -132,7 +132,7 @@ fn everything() -> Vec<Geometry> {
     let level = Arc::new(inner);
     let moving = |rng: &mut Pcg32| Geometry::MovingInstance {
         level: level.clone(),
-        world_from_object: Motion::new(placed(rng), placed(rng)).expect("sound"),
+        world_from_object: Box::new(Motion::new(placed(rng), placed(rng)).expect("sound")),
     };
     vec![
         mesh(100, 2, &mut rng),
@@ -216,7 +216,7 @@ fn filters_masks_and_user_shapes_go_together() {
     let level = Arc::new(level.unwrap().with_masks(vec![1, 2]));
     let mut geometries = everything();
     for _ in 0..5 {
-        let world_from_object = Motion::new(placed(&mut rng), placed(&mut rng)).unwrap();
+        let world_from_object = Box::new(Motion::new(placed(&mut rng), placed(&mut rng)).unwrap());
         geometries.push(Geometry::MovingInstance { level: level.clone(), world_from_object });
     }
     for mask in [1, 3, 4] {

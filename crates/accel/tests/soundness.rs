@@ -212,7 +212,7 @@ fn moving(time: f32, config: &Config) -> Vec<Geometry> {
         let at =
             Vector3::new(i as f32 * 0.05, 0.5, 0.1) + Vector3::new(0.0, 0.3, 0.2) * (time * i as f32 * 0.1);
         let world_from_object = Transform::translate(at) * Transform::scale(Vector3::splat(0.1));
-        all.push(Geometry::Instance { level: level.clone(), world_from_object });
+        all.push(Geometry::Instance { level: level.clone(), world_from_object: world_from_object.into() });
     }
     all
 }

@@ -112,7 +112,7 @@ pub(crate) struct LimitArgs {
     /// Includes within includes
     #[arg(long, value_name = "N", help_heading = "Limits")]
     pub max_include_depth: Option<usize>,
-    /// Files that a scene's text is spread over
+    /// Files that a scene's text is spread over, as often as they are included
     #[arg(long, value_name = "N", help_heading = "Limits")]
     pub max_files: Option<u64>,
     /// Objects within objects, textures or materials that refer to each other

@@ -93,6 +93,8 @@ pub enum SceneError {
         found: u64,
         /// How many there may be.
         limit: u64,
+        /// The limit's name, by which a flag of the program raises it; none for those that are fixed.
+        name: Option<&'static str>,
         /// Where.
         at: Span,
     },
@@ -132,8 +134,8 @@ impl SceneError {
                     None => Some(format!("known: {}", known.join(", "))),
                 }
             }
-            Self::Limit { .. } => {
-                Some("limits guard against broken or hostile files; each can be raised".to_owned())
+            Self::Limit { name: Some(name), .. } => {
+                Some(format!("limits guard against broken or hostile files: `--{name} N` raises this one"))
             }
             _ => None,
         }

@@ -31,6 +31,6 @@ pub use mesh::{Attribute, AttributeDomain, Mesh};
 pub use node::{Family, Node, NodeId};
 pub use params::{Param, ParamDoc, Params, Textured};
 pub use report::{Report, Warning};
-pub use scene_desc::SceneDesc;
+pub use scene_desc::{Instance, SceneDesc};
 pub use span::{Location, SourceFile, SourceId, Sources, Span};
 pub use value::Value;

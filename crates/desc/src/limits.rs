@@ -7,7 +7,7 @@ use crate::{SceneError, Span};
 pub struct Limits {
     /// Bytes of one file after decompression.
     pub max_file_bytes: u64,
-    /// Files that a scene's text is spread over.
+    /// Files that a scene's text is spread over, each counted as often as it is included.
     pub max_files: u64,
     /// Nested includes.
     pub max_include_depth: usize,
@@ -35,11 +35,26 @@ impl Limits {
             return Ok(());
         }
         let what = "the number of parameters of an element".to_owned();
-        Err(SceneError::Limit { what, found: found as u64, limit: self.max_params as u64, at })
+        Err(SceneError::Limit {
+            what,
+            found: found as u64,
+            limit: self.max_params as u64,
+            name: Some("max-params"),
+            at,
+        })
     }
 
     /// Bytes that any packed file may unpack to: it is the large ones that hurt.
     pub const UNPACK_FREELY: u64 = 16 << 20;
+
+    /// Bytes of text that including a few files again and again may make: as much as two million instances of something.
+    pub const INCLUDE_FREELY: u64 = 256 << 20;
+
+    /// Bytes of text that so many bytes of different files may make when they include each other.
+    pub fn max_included(&self, distinct: u64) -> u64 {
+        let by_ratio = distinct.saturating_mul(self.max_unpack_ratio);
+        by_ratio.max(Self::INCLUDE_FREELY).min(self.max_file_bytes)
+    }
 
     /// Bytes that so many packed bytes may unpack to.
     pub fn max_unpacked(&self, packed: usize) -> u64 {
@@ -52,7 +67,7 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             max_file_bytes: 4 << 30,
-            max_files: 1 << 14,
+            max_files: 1 << 15,
             max_include_depth: 64,
             max_nesting: 256,
             max_params: 256,

@@ -71,6 +71,10 @@ impl Params {
         match self.list.iter_mut().find(|p| p.name == param.name) {
             Some(old) => *old = param,
             None => {
+                // Most elements have a few parameters, and there may be many elements.
+                if self.list.len() < 4 {
+                    self.list.reserve_exact(1);
+                }
                 self.list.push(param);
                 self.used.push(false);
             }

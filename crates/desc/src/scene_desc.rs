@@ -2,7 +2,34 @@
 
 use std::ops::{Index, IndexMut};
 
+use aureole_math::Transform;
+
 use crate::{Family, Node, NodeId, Param, Params, SceneError, Span, Value, suggest};
+
+/// A group of shapes where it stands still, in as few bytes as there may be millions: one that moves is a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instance {
+    /// The group.
+    pub group: NodeId,
+    /// The first three rows of the map from the group into the world; the fourth is that of affine maps.
+    pub world_from_object: [[f64; 4]; 3],
+    /// Where it was written.
+    pub span: Span,
+}
+
+impl Instance {
+    /// An instance; `None` for a map that is not affine.
+    pub fn new(group: NodeId, world_from_object: &Transform, span: Span) -> Option<Self> {
+        let [x, y, z, w] = world_from_object.rows();
+        (w == [0.0, 0.0, 0.0, 1.0]).then_some(Self { group, world_from_object: [x, y, z], span })
+    }
+
+    /// The map from the group into the world; `None` if it has no inverse.
+    pub fn transform(&self) -> Option<Transform> {
+        let [x, y, z] = self.world_from_object;
+        Transform::from_rows([x, y, z, [0.0, 0.0, 0.0, 1.0]])
+    }
+}
 
 /// A scene as plain data: nodes that name each other by [`NodeId`].
 ///
@@ -23,6 +50,8 @@ pub struct SceneDesc {
     pub integrator: Option<NodeId>,
     /// Shapes of the world, also instances.
     pub shapes: Vec<NodeId>,
+    /// Further shapes of the world: groups, each where it stands still.
+    pub instances: Vec<Instance>,
     /// Lights other than area lights, which hang on their shapes as `emission`.
     pub lights: Vec<NodeId>,
 }

@@ -1,6 +1,6 @@
 //! Where in which file something was written.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -74,7 +74,9 @@ impl std::fmt::Display for Location {
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     files: Vec<SourceFile>,
-    paths: BTreeSet<PathBuf>,
+    texts: BTreeMap<PathBuf, SourceId>,
+    /// How often files were read once more.
+    repeats: u64,
     text_bytes: u64,
     distinct_text_bytes: u64,
 }
@@ -83,12 +85,20 @@ impl Sources {
     /// Adds a text file.
     pub fn add_text(&mut self, path: impl Into<PathBuf>, text: impl Into<Arc<str>>) -> SourceId {
         let (path, text) = (path.into(), text.into());
-        let bytes = text.len() as u64;
-        self.text_bytes += bytes;
-        if self.paths.insert(path.clone()) {
-            self.distinct_text_bytes += bytes;
-        }
-        self.add(SourceFile { path, text: Some(text) })
+        self.text_bytes += text.len() as u64;
+        self.distinct_text_bytes += text.len() as u64;
+        let id = self.add(SourceFile { path: path.clone(), text: Some(text) });
+        self.texts.insert(path, id);
+        id
+    }
+
+    /// A text file that was read before, and is read once more without being kept twice.
+    pub fn again(&mut self, path: &Path) -> Option<(SourceId, Arc<str>)> {
+        let id = *self.texts.get(path)?;
+        let text = self.get(id)?.text.clone()?;
+        self.text_bytes += text.len() as u64;
+        self.repeats += 1;
+        Some((id, text))
     }
 
     /// Checks that there are not too many files, and that including some of them again and again has not made far more text
@@ -97,13 +107,14 @@ impl Sources {
     /// # Errors
     /// [`SceneError::Limit`], at the place that asked for the last file.
     pub fn check(&self, limits: &Limits, at: Span) -> Result<(), SceneError> {
-        let most = limits.max_unpacked(self.distinct_text_bytes as usize);
-        for (what, found, limit) in [
-            ("the number of files of a scene", self.files.len() as u64, limits.max_files),
-            ("the text of all included files in bytes", self.text_bytes, most),
+        let files = self.files.len() as u64 + self.repeats;
+        let most = limits.max_included(self.distinct_text_bytes);
+        for (what, found, limit, name) in [
+            ("the number of files of a scene", files, limits.max_files, "max-files"),
+            ("the text of all included files in bytes", self.text_bytes, most, "max-unpack-ratio"),
         ] {
             if found > limit {
-                return Err(SceneError::Limit { what: what.to_owned(), found, limit, at });
+                return Err(SceneError::Limit { what: what.to_owned(), found, limit, name: Some(name), at });
             }
         }
         Ok(())
@@ -167,13 +178,21 @@ mod tests {
         let text: Arc<str> = " ".repeat(1 << 20).into();
         let most = |name: fn(usize) -> String| {
             let mut sources = Sources::default();
-            (0..2000).find(|&i| {
-                sources.add_text(name(i), text.clone());
-                sources.check(&limits, Span::NONE).is_err()
+            (0..2000).find_map(|i| {
+                let name = name(i);
+                if sources.again(name.as_ref()).is_none() {
+                    sources.add_text(name, text.clone());
+                }
+                let error = sources.check(&limits, Span::NONE).err()?;
+                Some((i, error.help().unwrap_or_default()))
             })
         };
-        assert_eq!(most(|_| "same".into()), Some(100), "a hundred times its size");
-        assert_eq!(most(|i| i.to_string()), Some(1000), "the limit of files");
+        let (count, help) = most(|_| "same".into()).unwrap();
+        assert_eq!(count, 256, "256 MiB");
+        assert!(help.contains("`--max-unpack-ratio N`"), "{help}");
+        let (count, help) = most(|i| i.to_string()).unwrap();
+        assert_eq!(count, 1000, "the limit of files");
+        assert!(help.contains("`--max-files N`"), "{help}");
     }
 
     #[test]

@@ -27,12 +27,12 @@ pub fn read_bytes(path: &Path, limits: &Limits, at: Span) -> Result<Vec<u8>, Sce
         return Err(failed(io::Error::other("it is not a file")));
     }
     let mut file = File::open(path).map_err(failed)?;
-    check_size(path, kind.len(), limits.max_file_bytes, at)?;
+    check_size(path, kind.len(), limits.max_file_bytes, "max-file-bytes", at)?;
 
     // A pipe or device has no size, so what it yields is counted as it comes.
     let mut bytes = Vec::with_capacity(kind.len() as usize);
     read_capped(&mut file, &mut bytes, limits.max_file_bytes).map_err(failed)?;
-    check_size(path, bytes.len() as u64, limits.max_file_bytes, at)?;
+    check_size(path, bytes.len() as u64, limits.max_file_bytes, "max-file-bytes", at)?;
     tracing::debug!(path = %path.display(), bytes = bytes.len(), "file read");
     let bytes = unpack(path, bytes, limits, at)?;
     match stray(&bytes) {
@@ -53,11 +53,12 @@ pub fn unpack(path: &Path, bytes: Vec<u8>, limits: &Limits, at: Span) -> Result<
     let mut unpacked = Vec::new();
     read_capped(&mut MultiGzDecoder::new(&*bytes), &mut unpacked, most)
         .map_err(|source| SceneError::Read { path: path.to_owned(), source, at })?;
-    check_size(path, unpacked.len() as u64, most, at)?;
+    let name = if most == limits.max_file_bytes { "max-file-bytes" } else { "max-unpack-ratio" };
+    check_size(path, unpacked.len() as u64, most, name, at)?;
     Ok(unpacked)
 }
 
-/// Reads a text file and notes it in `sources`, so that spans can point into it.
+/// Reads a text file and notes it in `sources`, so that spans can point into it. A file that is read again is not read twice.
 ///
 /// Bytes that are not UTF-8 become replacement characters: old scenes have Latin-1 in their comments.
 ///
@@ -69,6 +70,10 @@ pub fn read_text(
     sources: &mut Sources,
     at: Span,
 ) -> Result<(SourceId, Arc<str>), SceneError> {
+    if let Some(known) = sources.again(path) {
+        sources.check(limits, at)?;
+        return Ok(known);
+    }
     let bytes = read_bytes(path, limits, at)?;
     let text: Arc<str> = match String::from_utf8(bytes) {
         Ok(text) => text.into(),
@@ -99,15 +104,15 @@ fn read_capped(from: &mut impl Read, to: &mut Vec<u8>, most: u64) -> io::Result<
     from.take(most.saturating_add(1)).read_to_end(to)
 }
 
-fn check_size(path: &Path, found: u64, limit: u64, at: Span) -> Result<(), SceneError> {
+fn check_size(path: &Path, found: u64, limit: u64, name: &'static str, at: Span) -> Result<(), SceneError> {
     if found <= limit {
         return Ok(());
     }
     let what = format!("size in bytes of `{}`", path.display());
-    Err(SceneError::Limit { what, found, limit, at })
+    Err(SceneError::Limit { what, found, limit, name: Some(name), at })
 }
 
-/// The folders in which a scene's relative file names are looked up, in order.
+/// The folders in which a scene's relative file names are looked up, in order; after them comes the working directory.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SearchPath {
     folders: Vec<PathBuf>,
@@ -147,8 +152,8 @@ impl SearchPath {
     /// Backslashes, which scenes written on Windows have, count as slashes where no file of the literal name exists.
     pub fn resolve(&self, name: &str) -> PathBuf {
         let slashed = name.replace('\\', "/");
-        let candidates =
-            || [name, &slashed].into_iter().flat_map(|n| self.folders.iter().map(move |f| f.join(n)));
+        let in_folders = |n| self.folders.iter().map(move |folder| folder.join(n)).chain([PathBuf::from(n)]);
+        let candidates = || [name, &slashed].into_iter().flat_map(in_folders);
         candidates().find(|path| path.exists()).or_else(|| candidates().next()).unwrap_or_else(|| name.into())
     }
 }
@@ -187,6 +192,10 @@ mod tests {
         assert_eq!(search.resolve("meshes/a.ply"), folder.path().join("meshes/a.ply"));
         assert_eq!(search.resolve("meshes\\a.ply"), folder.path().join("meshes/a.ply"));
         assert_eq!(search.resolve("b.ply"), Path::new("/nowhere/b.ply"));
+        // Tests run in the folder of the crate; what is beside the scene comes before what is there.
+        assert_eq!(search.resolve("src\\file.rs"), Path::new("src/file.rs"));
+        std::fs::write(folder.path().join("Cargo.toml"), "").unwrap();
+        assert_eq!(search.resolve("Cargo.toml"), folder.path().join("Cargo.toml"));
     }
 
     #[test]

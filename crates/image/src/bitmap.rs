@@ -78,7 +78,8 @@ impl Bitmap {
     }
 
     /// The picture among a file's channels.
-    pub(crate) fn from_raster(raster: Raster, encoding: Encoding) -> Option<Self> {
+    pub(crate) fn from_raster(mut raster: Raster, encoding: Encoding) -> Option<Self> {
+        raster.convert_xyz();
         let picture = raster.picture_channels();
         let texels = raster.texels.pick(raster.channels.len(), &picture);
         Self::checked(raster.width, raster.height, picture.len(), texels, encoding)

@@ -30,5 +30,5 @@ pub use hash::{Pcg32, hash_u32, hash_u64};
 pub use motion::Motion;
 pub use ray::Ray;
 pub use robust::{difference_of_products, gamma, next_down, next_up, offset_ray_origin};
-pub use transform::Transform;
+pub use transform::{RayMap, Transform};
 pub use tuple::{Normal3, Point2, Point3, Vector2, Vector3};

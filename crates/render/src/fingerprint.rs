@@ -56,7 +56,11 @@ impl Fingerprint {
             }
         }
         let roots = format!("{:?} {:?}", desc.shapes, desc.lights);
-        hashes.entry(Family::Shape.name()).or_default().text(&roots);
+        let shapes = hashes.entry(Family::Shape.name()).or_default();
+        shapes.text(&roots);
+        for instance in &desc.instances {
+            shapes.text(&format!("{:?} {:?}", instance.group, instance.world_from_object));
+        }
         for (family, hash) in hashes {
             print.set(family, hash.finish());
         }

@@ -26,6 +26,8 @@ const BUILD_TRIANGLE: u64 = 60;
 const REFINED_TRIANGLE: u64 = 16 + 12;
 /// Bytes of any other shape or instance, with its boxes.
 const OTHER_SHAPE: u64 = 1024;
+/// Bytes of an instance that does not move, as it is described, as it is rendered, and while the accelerator is built.
+const INSTANCE: [u64; 3] = [120, 640, 240];
 /// The film is kept in tiles, which overlap as far as filters reach (half as much again for a Gaussian), and copied where it
 /// is looked at: for a checkpoint, for the image.
 const FILM_COPIES: u64 = 3;
@@ -57,7 +59,8 @@ impl MemoryEstimate {
     pub fn new(desc: &SceneDesc, width: u32, height: u32, limits: &Limits) -> Self {
         let pixels = u64::from(width) * u64::from(height);
         let film = pixels * (FILM_COPIES * Film::BYTES_PER_PIXEL as u64 + OUTPUT_PIXEL);
-        let mut estimate = Self { film, ..Self::default() };
+        let [description, shapes, building] = INSTANCE.map(|bytes| bytes * desc.instances.len() as u64);
+        let mut estimate = Self { description, shapes, building, film, ..Self::default() };
         let mut shared: FxHashSet<*const Mesh> = FxHashSet::default();
         let mut pictures: FxHashSet<&Path> = FxHashSet::default();
         for (_, node) in desc.nodes() {

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use aureole_accel::{AccelError, Config, Geometry, World};
-use aureole_desc::{Family, Limits, Node, NodeId, Params, Report, SceneDesc, SceneError, Span, Value};
+use aureole_desc::{
+    self as desc, Family, Limits, Node, NodeId, Params, Report, SceneDesc, SceneError, Span, Value,
+};
 use aureole_elements::light::Area;
 use aureole_elements::{Camera, Filter, Light, Material, Resolver, Sampler, Shape, Texture, shape};
 use aureole_math::{Arena, Bounds3, Id, Motion, Point3, Transform, Vector3};
@@ -74,6 +76,8 @@ fn border(filter: &Filter) -> [u32; 2] {
     [radius.x, radius.y].map(|r| if is_shared { (r - 0.5).ceil().max(0.0) as u32 } else { 0 })
 }
 
+const NOT_INVERTIBLE: &str = "the transform cannot be inverted";
+
 struct Compiler<'a> {
     resolve: Resolve<'a>,
     options: &'a CompileOptions,
@@ -107,6 +111,39 @@ fn motion(start: Transform, end: Transform, at: Span) -> Result<Option<Motion>, 
     })
 }
 
+/// What a level is made of, as far as it is built.
+struct Members {
+    geometries: Vec<Geometry>,
+    /// Where each was written.
+    spans: Vec<Span>,
+    first_error: Option<SceneError>,
+}
+
+impl Members {
+    fn with_capacity(count: usize) -> Self {
+        Self { geometries: Vec::with_capacity(count), spans: Vec::with_capacity(count), first_error: None }
+    }
+
+    /// Takes a geometry, if there is one, and collects all errors but the first.
+    fn take(
+        &mut self,
+        built: Result<Option<Geometry>, SceneError>,
+        at: Span,
+        report: &mut Report,
+    ) -> Result<(), SceneError> {
+        match built {
+            Ok(Some(geometry)) => {
+                self.geometries.push(geometry);
+                self.spans.push(at);
+            }
+            Ok(None) => {}
+            Err(error) if self.first_error.is_none() => self.first_error = Some(error),
+            Err(error) => report.collect(error)?,
+        }
+        Ok(())
+    }
+}
+
 /// The geometry that an accelerator complains about.
 fn geometry_of(error: &AccelError) -> Option<usize> {
     match error {
@@ -117,29 +154,32 @@ fn geometry_of(error: &AccelError) -> Option<usize> {
 
 impl Compiler<'_> {
     fn world(&mut self) -> Result<World, SceneError> {
-        let shapes = &self.resolve.desc.shapes;
-        self.level(0, shapes)
+        let desc = self.resolve.desc;
+        self.level(0, &desc.shapes, &desc.instances)
     }
 
     /// Builds the shapes of a level and what accelerates them. Goes on after errors, to report several at once.
-    fn level(&mut self, level: usize, nodes: &[NodeId]) -> Result<World, SceneError> {
-        let mut geometries = Vec::new();
-        let mut spans = Vec::new();
-        let mut first_error = None;
+    fn level(
+        &mut self,
+        level: usize,
+        nodes: &[NodeId],
+        instances: &[desc::Instance],
+    ) -> Result<World, SceneError> {
+        let count = nodes.len() + instances.len();
+        self.levels[level].reserve_exact(count);
+        let mut members = Members::with_capacity(count);
         for &node in nodes {
-            match self.shape(level, node) {
-                Ok(Some(geometry)) => {
-                    geometries.push(geometry);
-                    spans.push(self.resolve.desc[node].span);
-                }
-                Ok(None) => {}
-                Err(error) if first_error.is_none() => first_error = Some(error),
-                Err(error) => self.resolve.report.collect(error)?,
-            }
+            let built = self.shape(level, node);
+            members.take(built, self.resolve.desc[node].span, self.resolve.report)?;
         }
-        if let Some(error) = first_error {
+        for instance in instances {
+            let built = self.placed(instance).map(Some);
+            members.take(built, instance.span, self.resolve.report)?;
+        }
+        if let Some(error) = members.first_error {
             return Err(error);
         }
+        let Members { geometries, spans, .. } = members;
         World::build(geometries, level as u32, &self.options.accel).map_err(|error| {
             let at = geometry_of(&error).and_then(|geometry| spans.get(geometry));
             SceneError::invalid(error.to_string(), at.copied().unwrap_or(Span::NONE))
@@ -171,7 +211,7 @@ impl Compiler<'_> {
         })?;
         let world_from_object = params.transform("world_from_object")?;
         if !world_from_object.is_invertible() {
-            return Err(SceneError::invalid("the transform cannot be inverted", span));
+            return Err(SceneError::invalid(NOT_INVERTIBLE, span));
         }
         let motion = match params.has("world_from_object_end") {
             true => {
@@ -188,17 +228,31 @@ impl Compiler<'_> {
             let place = Place::Moving(Box::new(motion.clone()));
             let instance = Instance { level: inner_level, place, lights: Box::default() };
             self.levels[0].push(Object::Instance(instance));
-            return Ok(Geometry::MovingInstance { level: world, world_from_object: motion });
+            return Ok(Geometry::MovingInstance { level: world, world_from_object: Box::new(motion) });
         }
+        Ok(self.still(world, inner_level, world_from_object))
+    }
+
+    /// An instance that the description gives in few bytes.
+    fn placed(&mut self, instance: &desc::Instance) -> Result<Geometry, SceneError> {
+        let place = instance.transform().filter(Transform::is_invertible);
+        let place = place.ok_or_else(|| SceneError::invalid(NOT_INVERTIBLE, instance.span))?;
+        let (world, level) = self.group(instance.group)?;
+        Ok(self.still(world, level, place))
+    }
+
+    /// An instance that does not move.
+    fn still(&mut self, world: Arc<World>, inner_level: u32, place: Transform) -> Geometry {
+        let place = Arc::new(place);
         let mut lights = Vec::new();
         for (geometry, light, node) in &self.shining[inner_level as usize] {
             self.origins.lights.push(*node);
-            lights.push((*geometry, self.lights.push(light.placed(&world_from_object))));
+            lights.push((*geometry, self.lights.push(light.placed(&place))));
         }
-        let place = Place::Still(world_from_object);
-        let instance = Instance { level: inner_level, place, lights: lights.into() };
+        let still = Place::Still(place.clone());
+        let instance = Instance { level: inner_level, place: still, lights: lights.into() };
         self.levels[0].push(Object::Instance(instance));
-        Ok(Geometry::Instance { level: world, world_from_object })
+        Geometry::Instance { level: world, world_from_object: place }
     }
 
     /// The world of a group, built once, and its level.
@@ -216,7 +270,7 @@ impl Compiler<'_> {
         self.levels.push(Vec::new());
         self.shining.push(Vec::new());
         let level = self.levels.len() - 1;
-        let world = Arc::new(self.level(level, &children)?);
+        let world = Arc::new(self.level(level, &children, &[])?);
         self.worlds.insert(node, world.clone());
         Ok((world, level as u32))
     }

@@ -151,6 +151,7 @@ impl Film {
             what: "the image's number of pixels".into(),
             found,
             limit: limits.max_pixels,
+            name: Some("max-pixels"),
             at,
         })
     }

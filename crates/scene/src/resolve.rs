@@ -85,21 +85,27 @@ impl<'a> Resolve<'a> {
         build: impl FnOnce(&mut Self) -> Result<T, SceneError>,
     ) -> Result<(T, u64), SceneError> {
         let at = self.desc[node].span;
-        let check = |what: &str, found: u64, limit: u64| match found > limit {
-            true => Err(SceneError::Limit { what: what.to_owned(), found, limit, at }),
+        let check = |what: &str, found: u64, limit: u64, name| match found > limit {
+            true => Err(SceneError::Limit { what: what.to_owned(), found, limit, name: Some(name), at }),
             false => Ok(()),
         };
         check(
             "the chain of elements that refer to each other",
             self.depth as u64,
             self.limits.max_nesting as u64,
+            "max-nesting",
         )?;
         self.depth += 1;
         let others = std::mem::take(&mut self.cost);
         let built = build(self);
         self.depth -= 1;
         let cost = 1 + std::mem::replace(&mut self.cost, others);
-        check("the number of evaluations of one element", cost, self.limits.max_evaluations)?;
+        check(
+            "the number of evaluations of one element",
+            cost,
+            self.limits.max_evaluations,
+            "max-evaluations",
+        )?;
         self.cost += cost;
         Ok((built?, cost))
     }
@@ -157,9 +163,15 @@ impl Resolver for Resolve<'_> {
         if let Some(bitmap) = self.bitmaps.get(&key) {
             return Ok(bitmap.clone());
         }
-        let limits = ImageLimits { max_pixels: self.limits.max_pixels, ..ImageLimits::default() };
+        let max_pixels = self.limits.max_pixels;
+        // Eight floats a pixel, where there may be more of them than usual.
+        let max_bytes = ImageLimits::default().max_bytes.max(max_pixels.saturating_mul(32));
+        let limits = ImageLimits { max_pixels, max_bytes };
         let bitmap = Arc::new(read_bitmap(path, encoding, &limits).unwrap_or_else(|error| {
-            let help = "a magenta picture stands in for it".to_owned();
+            let mut help = "a magenta picture stands in for it".to_owned();
+            if error.is_limit() {
+                help += "; `--max-pixels N` raises the limit";
+            }
             self.report.warn_with_help(error.to_string(), Some(help), at);
             Bitmap::placeholder([1.0, 0.0, 1.0])
         }));

@@ -1,5 +1,7 @@
 //! Scenes: what integrators ask.
 
+use std::sync::Arc;
+
 use aureole_accel::{Hit, NO_INSTANCE, Stats, World};
 use aureole_desc::Node;
 use aureole_elements::bsdf::MaterialContext;
@@ -36,7 +38,8 @@ pub(crate) struct Instance {
 /// Where an instance is.
 #[derive(Clone, Debug)]
 pub(crate) enum Place {
-    Still(Transform),
+    /// Shared with the accelerator while that is built.
+    Still(Arc<Transform>),
     Moving(Box<Motion>),
 }
 
@@ -261,7 +264,7 @@ impl Scene {
         };
         let moved;
         let place = match &instance.place {
-            Place::Still(place) => place,
+            Place::Still(place) => place.as_ref(),
             Place::Moving(motion) => {
                 moved = motion.at(ray.time);
                 &moved

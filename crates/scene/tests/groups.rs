@@ -1,11 +1,12 @@
 //! Shapes that shine in groups: each instance is a light of its own.
 
-use aureole_desc::{Family, Node, Params, Report, SceneDesc, Span, Value};
+use aureole_desc::{Family, Instance, Node, Params, Report, SceneDesc, Span, Value};
 use aureole_math::{Pcg32, Point3, Ray, Transform, Vector3};
 use aureole_scene::{CompileOptions, Scene, compile};
 use aureole_spectrum::Wavelengths;
 
-/// A dark ball and a shining one in a group, placed twice: moved, and mirrored and stretched.
+/// A dark ball and a shining one in a group, placed twice: moved, and mirrored and stretched; once by a node and once by an
+/// instance that takes less room.
 fn scene() -> Scene {
     let mut desc = SceneDesc::default();
     let mut add =
@@ -16,17 +17,14 @@ fn scene() -> Scene {
     let dark = add(Family::Shape, "sphere", ball(-2.0));
     let bright = add(Family::Shape, "sphere", ball(0.0).with("emission", Value::Node(light)));
     let group = add(Family::Shape, "group", Params::new().with("shapes", Value::Nodes(vec![dark, bright])));
-    let places = [
-        Transform::translate(Vector3::new(2.0, 0.0, 0.0)),
-        Transform::translate(Vector3::new(-2.0, 0.0, 0.0)) * Transform::scale(Vector3::new(-1.0, 2.0, 0.5)),
-    ];
-    let instances = places.map(|place| {
-        let params = Params::new()
-            .with("group", Value::Node(group))
-            .with("world_from_object", Value::Transform(place));
-        add(Family::Shape, "instance", params)
-    });
-    desc.shapes.extend(instances);
+    let right = Transform::translate(Vector3::new(2.0, 0.0, 0.0));
+    let left =
+        Transform::translate(Vector3::new(-2.0, 0.0, 0.0)) * Transform::scale(Vector3::new(-1.0, 2.0, 0.5));
+    let params =
+        Params::new().with("group", Value::Node(group)).with("world_from_object", Value::Transform(right));
+    let node = add(Family::Shape, "instance", params);
+    desc.shapes.push(node);
+    desc.instances.extend(Instance::new(group, &left, Span::NONE));
     let mut report = Report::default();
     let scene = compile(&desc, &CompileOptions::default(), &mut report).expect("is sound");
     assert!(report.warnings.iter().all(|warning| warning.message.contains("camera")), "{report:?}");

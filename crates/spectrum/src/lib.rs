@@ -14,6 +14,7 @@
 mod color;
 mod data;
 mod illuminant;
+mod primaries;
 mod source;
 mod spectrum;
 mod wavelengths;
@@ -23,6 +24,7 @@ pub use data::{
     Metal, Scattering, blackbody, dielectric_ior, dielectrics, glass, metal, metals, named_spectrum,
     scattering_substances, spectrum_names,
 };
+pub use primaries::{Primaries, WhitePoint};
 pub use source::{PreparedSpectrum, SpectrumRole, SpectrumSource, Tabulated};
 pub use spectrum::Spectrum;
 pub use wavelengths::{ColorMode, Wavelengths};

@@ -82,12 +82,13 @@ fn names_need_not_be_utf_8() {
 }
 
 #[test]
-fn entity_bombs_are_refused() {
+fn entity_bombs_do_not_go_off() {
     let program = Program::new();
     let entities: String =
         (1..10).map(|i| format!("<!ENTITY e{i} \"{}\">", format!("&e{};", i - 1).repeat(10))).collect();
     program.write("bomb.xml", &format!("<!DOCTYPE s [<!ENTITY e0 \"ha\">{entities}]><scene>&e9;</scene>"));
-    fails_soon(&program, "render bomb.xml", 3, &["document type", "bomb.xml:1:"]);
+    // Nothing of a document type is taken in, so its entity is no more than a word.
+    fails_soon(&program, "render bomb.xml", 3, &["text between elements", "bomb.xml:1:"]);
 }
 
 #[test]
@@ -97,7 +98,7 @@ fn packed_bombs_are_refused() {
     let script = "head -c 1000000000 /dev/zero | gzip -1 > bomb.pbrt.gz";
     let packed = std::process::Command::new("sh").args(["-c", script]).current_dir(program.path()).status();
     assert!(packed.is_ok_and(|status| status.success()));
-    fails_soon(&program, "render bomb.pbrt.gz", 5, &["bomb.pbrt.gz", "size in bytes"]);
+    fails_soon(&program, "render bomb.pbrt.gz", 5, &["bomb.pbrt.gz", "size in bytes", "--max-unpack-ratio"]);
 }
 
 #[test]
@@ -106,7 +107,7 @@ fn deep_nesting_is_refused() {
     let deep = |open: &str, close: &str| format!("{}{}", open.repeat(100_000), close.repeat(100_000));
     let shapes = deep("<shape type=\"shapegroup\">", "</shape>");
     program.write("deep.xml", &format!("<scene version=\"3.0.0\">{shapes}</scene>"));
-    fails_soon(&program, "render deep.xml", 5, &["nesting", "deep.xml:1:"]);
+    fails_soon(&program, "render deep.xml", 5, &["nesting", "deep.xml:1:", "--max-nesting"]);
     program.write("deep.pbrt", &deep("AttributeBegin\n", "AttributeEnd\n"));
     fails_soon(&program, "render deep.pbrt", 5, &["nested", "deep.pbrt:257:"]);
     let open = "[".repeat(100_000);
@@ -127,7 +128,7 @@ fn long_chains_of_references_are_refused() {
              Material \"diffuse\" \"texture reflectance\" \"t99999\"\nShape \"sphere\"\n"
         ),
     );
-    fails_soon(&program, "render chain.pbrt", 5, &["chain of elements", "chain.pbrt:"]);
+    fails_soon(&program, "render chain.pbrt", 5, &["chain of elements", "chain.pbrt:", "--max-nesting"]);
 }
 
 #[test]
@@ -147,7 +148,7 @@ fn includes_in_circles_and_in_floods_are_refused() {
     }
     program.write("40.pbrt", "# the end\n");
     program.write("40.xml", "<scene version=\"3.0.0\"/>");
-    fails_soon(&program, "render 0.pbrt", 5, &["number of files", ".pbrt:"]);
+    fails_soon(&program, "render 0.pbrt", 5, &["number of files", ".pbrt:", "--max-files"]);
     fails_soon(&program, "render 0.xml", 5, &["number of files", ".xml:"]);
 }
 
@@ -171,7 +172,7 @@ fn absurd_sizes_are_refused() {
         &program,
         "render ball.xml --set film.width=1000000 --set film.height=1000000",
         5,
-        &["pixels"],
+        &["pixels", "--max-pixels"],
     );
 }
 
@@ -187,7 +188,7 @@ fn floods_of_mistakes_take_no_longer_than_files_of_their_size() {
 
     let unknown: String = (0..100_000).map(|i| format!("\"float p{i}\" 1\n")).collect();
     program.write("flood.pbrt", &format!("WorldBegin\nShape \"sphere\"\n{unknown}"));
-    fails_soon(&program, "render flood.pbrt", 5, &["parameters", "flood.pbrt:259:"]);
+    fails_soon(&program, "render flood.pbrt", 5, &["parameters", "flood.pbrt:259:", "--max-params"]);
     let unknown: String = (0..100_000).map(|i| format!("<float name=\"p{i}\" value=\"1\"/>\n")).collect();
     program.write(
         "flood.xml",

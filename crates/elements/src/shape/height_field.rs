@@ -78,7 +78,13 @@ impl Element for HeightField {
         }
         let (found, limit) = (2 * u64::from(width) * u64::from(height), resolver.limits().max_mesh_elements);
         if found > limit.min(u64::from(u32::MAX)) {
-            return Err(SceneError::Limit { what: "triangles of a height field".into(), found, limit, at });
+            return Err(SceneError::Limit {
+                what: "triangles of a height field".into(),
+                found,
+                limit,
+                name: Some("max-mesh-elements"),
+                at,
+            });
         }
         let points = width as usize * height as usize;
         let heights: Arc<[f32]> = match (texture, heights) {

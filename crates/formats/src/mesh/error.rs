@@ -20,6 +20,8 @@ pub enum MeshError {
         found: u64,
         /// How many there may be.
         limit: u64,
+        /// The limit's name.
+        name: &'static str,
     },
 }
 
@@ -39,8 +41,9 @@ impl MeshError {
     pub fn in_file(self, path: &Path, at: Span) -> SceneError {
         match self {
             Self::Content(message) => SceneError::Asset { path: path.to_owned(), message, at },
-            Self::Limit { what, found, limit } => {
-                SceneError::Limit { what: format!("{what} of `{}`", path.display()), found, limit, at }
+            Self::Limit { what, found, limit, name } => {
+                let what = format!("{what} of `{}`", path.display());
+                SceneError::Limit { what, found, limit, name: Some(name), at }
             }
         }
     }
@@ -50,7 +53,7 @@ impl MeshError {
 pub(crate) fn check_count(what: &str, found: u64, limits: &Limits) -> Result<usize, MeshError> {
     let limit = limits.max_mesh_elements.min(u64::from(u32::MAX));
     if found > limit {
-        return Err(MeshError::Limit { what: what.to_owned(), found, limit });
+        return Err(MeshError::Limit { what: what.to_owned(), found, limit, name: "max-mesh-elements" });
     }
     Ok(found as usize)
 }

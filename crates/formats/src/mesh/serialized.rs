@@ -125,7 +125,8 @@ impl Stream<'_> {
             .map_err(|error| MeshError::content(format!("cannot unpack: {error}")))?;
         if bytes.len() < size && self.unpack.limit() == 0 {
             let what = "unpacked size in bytes".to_owned();
-            return Err(MeshError::Limit { what, found: self.most + 1, limit: self.most });
+            let name = "max-unpack-ratio";
+            return Err(MeshError::Limit { what, found: self.most + 1, limit: self.most, name });
         }
         if bytes.len() < size {
             return Err(MeshError::content(format!(

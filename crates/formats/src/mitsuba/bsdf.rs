@@ -9,7 +9,7 @@ use super::tree::Tag;
 use crate::brdf;
 
 /// Mitsuba's plugins and Aureole's words for them. Not all of the latter can be rendered yet.
-const KINDS: &[(&str, &str)] = &[
+pub(super) const KINDS: &[(&str, &str)] = &[
     ("diffuse", "diffuse"),
     ("conductor", "conductor"),
     ("roughconductor", "rough_conductor"),

@@ -34,9 +34,7 @@ pub(super) fn gather<'a>(
         params.set(Param { name: "world_from_object".to_owned(), value: world_from_object, span: at });
         shapes.push(t.scene.add(Node::new(Family::Shape, "sphere", params, scope.span())));
     }
-    for left in scope.values.iter() {
-        t.context.report.warn(format!("`{}` of {} is ignored", left.name, scope.describe()), left.span);
-    }
+    t.leave(&scope);
     Ok(())
 }
 

@@ -8,7 +8,7 @@ use super::translate::Translator;
 use super::tree::{ObjectId, Tag};
 
 /// Mitsuba's plugins and Aureole's words for them. Not all of the latter can be rendered yet.
-const KINDS: &[(&str, &str)] = &[
+pub(super) const KINDS: &[(&str, &str)] = &[
     ("area", "area"),
     ("point", "point"),
     ("spot", "spot"),

@@ -6,9 +6,9 @@ use super::scope::Scope;
 use super::translate::Translator;
 use super::tree::{ObjectId, Tag};
 
-const FILMS: &[(&str, &str)] = &[("hdrfilm", "film"), ("ldrfilm", "film"), ("specfilm", "film")];
+pub(super) const FILMS: &[(&str, &str)] = &[("hdrfilm", "film"), ("ldrfilm", "film"), ("specfilm", "film")];
 
-const FILTERS: &[(&str, &str)] = &[
+pub(super) const FILTERS: &[(&str, &str)] = &[
     ("box", "box"),
     ("tent", "tent"),
     ("gaussian", "gaussian"),
@@ -18,7 +18,7 @@ const FILTERS: &[(&str, &str)] = &[
 ];
 
 /// All samplers but `stratified` have the same mean as Sobol points and more noise.
-const SAMPLERS: &[(&str, &str)] = &[
+pub(super) const SAMPLERS: &[(&str, &str)] = &[
     ("independent", "sobol"),
     ("stratified", "stratified"),
     ("multijitter", "sobol"),
@@ -33,7 +33,7 @@ pub(super) fn film(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<NodeI
     let kind = t.kind(&scope, Family::Film, FILMS)?;
     if scope.object.plugin == "specfilm" {
         t.context.report.warn("`specfilm` is rendered as a film of colours", scope.span());
-        scope.children.retain(|child| child.tag == Tag::Filter);
+        scope.children.retain(|child| !matches!(child.tag, Tag::Spectrum | Tag::Texture));
     }
     scope.default("width", Value::Int(768));
     scope.default("height", Value::Int(576));
@@ -48,11 +48,6 @@ pub(super) fn film(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<NodeI
         "banner",
         "attach_log",
         "high_quality_edges",
-        "tonemap_method",
-        "gamma",
-        "exposure",
-        "key",
-        "burn",
         "label",
     ]);
     if let Some(format) = scope.string("pixel_format")? {
@@ -116,6 +111,7 @@ pub(super) fn sampler(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<No
     let mut scope = Scope::new(tree, tree.get(id))?;
     let kind = t.kind(&scope, Family::Sampler, SAMPLERS)?;
     scope.default("sample_count", Value::Int(4));
-    scope.ignore(&["jitter", "strength", "dimension", "scramble"]);
+    // Which noise it is is a matter of the render's own seed.
+    scope.ignore(&["seed", "jitter", "strength", "dimension", "scramble"]);
     t.finish(scope, Family::Sampler, kind)
 }

@@ -7,7 +7,7 @@ use super::translate::Translator;
 use super::tree::{ObjectId, Tag};
 
 /// Mitsuba's plugins and Aureole's words for them. Wrappers have an empty word.
-const KINDS: &[(&str, &str)] = &[
+pub(super) const KINDS: &[(&str, &str)] = &[
     ("path", "path"),
     ("direct", "direct"),
     ("volpath", "path"),
@@ -17,11 +17,16 @@ const KINDS: &[(&str, &str)] = &[
     ("prb", "path"),
     ("prb_basic", "path"),
     ("prb_projective", "path"),
+    ("direct_projective", "direct"),
     ("prbvolpath", "path"),
     ("moment", ""),
     ("aov", ""),
     ("stokes", ""),
 ];
+
+/// Parameters of derivatives, which no picture depends on.
+const DERIVATIVES: [&str; 7] =
+    ["sppc", "sppp", "sppi", "guiding", "guiding_proj", "guiding_rounds", "project_seed"];
 
 /// Quantities of `aov` that are layers in Aureole by the same name.
 const QUANTITIES: [&str; 12] = [
@@ -43,6 +48,10 @@ const QUANTITIES: [&str; 12] = [
 pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), SceneError> {
     let tree = t.tree;
     let mut scope = Scope::new(tree, tree.get(id))?;
+    if t.scene.integrator.is_some() {
+        t.context.report.warn("a scene has one integrator: this one is ignored", scope.span());
+        return Ok(());
+    }
     let kind = t.kind(&scope, Family::Integrator, KINDS)?;
     let plugin = scope.object.plugin.as_str();
     if kind.is_empty() {
@@ -68,8 +77,11 @@ pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), S
         }
         _ => {}
     }
-    // How work is shared out, and derivatives.
-    scope.ignore(&["samples_per_pass", "block_size", "timeout", "hide_environment", "hq_emitter_sampling"]);
+    // How work is shared out.
+    scope.ignore(&["samples_per_pass", "block_size", "timeout", "hq_emitter_sampling"]);
+    if plugin.ends_with("_projective") {
+        scope.ignore(&DERIVATIVES);
+    }
     let node = t.finish(scope, Family::Integrator, kind)?;
     t.scene.integrator = Some(node);
     Ok(())
@@ -105,6 +117,7 @@ fn wrapper<'a>(t: &mut Translator<'a, '_, '_>, mut scope: Scope<'a>) -> Result<(
             Vec::new()
         }
     };
+    t.leave(&scope);
     let integrator = match (inner, t.scene.integrator) {
         (Some(_), Some(integrator)) => integrator,
         _ if plugin == "aov" => {

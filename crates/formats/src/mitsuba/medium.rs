@@ -29,9 +29,14 @@ pub(super) fn translate<'a>(
 pub(super) fn volume<'a>(t: &mut Translator<'a, '_, '_>, mut scope: Scope<'a>) -> Result<Value, SceneError> {
     match t.kind(&scope, Family::Medium, VOLUMES)? {
         "constant" => {
-            let value = scope.values.try_spectrum("value")?;
+            let value = scope.spectrum("value")?;
+            t.leave(&scope);
             value.map(Value::Spectrum).ok_or_else(|| scope.missing("value", "a colour or number"))
         }
-        _ => Ok(Value::Path(t.path(&mut scope, "filename")?.0)),
+        _ => {
+            let path = t.path(&mut scope, "filename")?.0;
+            t.leave(&scope);
+            Ok(Value::Path(path))
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! One object on its way into a node.
 
 use aureole_desc::{Param, Params, SceneError, Span, Value};
+use aureole_spectrum::SpectrumSource;
 
 use super::tree::{Child, Object, ObjectId, Tag, Target, Tree};
 
@@ -105,6 +106,13 @@ impl<'a> Scope<'a> {
         let found = self.values.try_float(name)?;
         self.values.remove(name);
         Ok(found.map(f64::from))
+    }
+
+    /// Takes a colour or spectrum.
+    pub(super) fn spectrum(&mut self, name: &str) -> Result<Option<SpectrumSource>, SceneError> {
+        let found = self.values.try_spectrum(name)?;
+        self.values.remove(name);
+        Ok(found)
     }
 
     /// Takes a word.

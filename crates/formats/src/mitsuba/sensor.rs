@@ -9,7 +9,7 @@ use super::translate::Translator;
 use super::tree::{ObjectId, Tag};
 
 /// Mitsuba's plugins and Aureole's words for them.
-const KINDS: &[(&str, &str)] = &[
+pub(super) const KINDS: &[(&str, &str)] = &[
     ("perspective", "perspective"),
     ("thinlens", "perspective"),
     ("orthographic", "orthographic"),
@@ -77,8 +77,18 @@ fn translate(
         _ => scope.ignore(&["focus_distance"]),
     }
 
-    if let Some(film) = scope.take_child(&[Tag::Film]).filter(|_| is_first) {
-        t.scene.film = Some(film::film(t, film.id)?);
+    if let Some(film) = scope.take_child(&[Tag::Film]) {
+        match t.first_film {
+            None if is_first => {
+                t.first_film = Some(film.id);
+                t.scene.film = Some(film::film(t, film.id)?);
+            }
+            Some(first) if t.tree.get(first).values != t.tree.get(film.id).values => {
+                let message = "the film of the scene's first sensor counts for all of them, not this one";
+                t.context.report.warn(message, film.span);
+            }
+            _ => {}
+        }
     }
     if let Some(sampler) = scope.take_child(&[Tag::Sampler]).filter(|_| is_first) {
         t.scene.sampler = Some(film::sampler(t, sampler.id)?);

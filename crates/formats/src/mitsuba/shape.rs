@@ -2,19 +2,20 @@
 
 use std::sync::Arc;
 
-use aureole_desc::{Family, Limits, Node, NodeId, Params, SceneError, Span, Value};
+use aureole_desc::{Family, Instance, Limits, Node, NodeId, Params, SceneError, Span, Value};
+use aureole_math::Transform;
 use aureole_spectrum::SpectrumSource;
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-use super::scope::Scope;
+use super::scope::{Scope, resolve};
 use super::translate::{MeshKey, Orientation, ReadMesh, Translator};
 use super::tree::{ObjectId, Tag};
 use super::{ellipsoids, sensor};
 use crate::mesh::{MeshFile, curves, obj, ply, serialized, vol};
 
 /// Mitsuba's plugins and Aureole's words for them.
-const KINDS: &[(&str, &str)] = &[
+pub(super) const KINDS: &[(&str, &str)] = &[
     ("sphere", "sphere"),
     ("disk", "disk"),
     ("rectangle", "rectangle"),
@@ -36,6 +37,10 @@ const KINDS: &[(&str, &str)] = &[
 
 /// Adds a shape of the scene. Groups appear only by their instances; merged shapes are shapes like others.
 pub(super) fn root(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<(), SceneError> {
+    if let Some(instance) = placed(t, id)? {
+        t.scene.instances.push(instance);
+        return Ok(());
+    }
     let mut shapes = Vec::new();
     gather(t, id, &mut shapes, 0)?;
     t.scene.shapes.extend(shapes);
@@ -59,9 +64,12 @@ fn gather(
             Err(SceneError::invalid("`merge` contains itself", object.span))
         }
         "merge" => {
-            let children = Scope::new(tree, object)?.children;
-            let mut inner = children.iter().filter(|child| child.tag == Tag::Shape);
-            inner.try_for_each(|child| gather(t, child.id, shapes, depth + 1))
+            let mut scope = Scope::new(tree, object)?;
+            while let Some(child) = scope.take_child(&[Tag::Shape]) {
+                gather(t, child.id, shapes, depth + 1)?;
+            }
+            t.leave(&scope);
+            Ok(())
         }
         _ => {
             if let Value::Node(shape) = t.value(id)? {
@@ -69,6 +77,29 @@ fn gather(
             }
             Ok(())
         }
+    }
+}
+
+/// An instance that says no more than what stands where; others are nodes, which warn about the rest.
+fn placed(t: &mut Translator<'_, '_, '_>, id: ObjectId) -> Result<Option<Instance>, SceneError> {
+    let tree = t.tree;
+    let object = tree.get(id);
+    if object.plugin != "instance" || object.id.is_some() {
+        return Ok(None);
+    }
+    let [child] = &object.children[..] else { return Ok(None) };
+    let group = resolve(tree, child)?;
+    let place = match (object.values.len(), object.values.get("to_world")) {
+        (0, _) => Transform::IDENTITY,
+        (1, Some(Value::Transform(place))) => *place,
+        _ => return Ok(None),
+    };
+    if tree.get(group.id).plugin != "shapegroup" {
+        return Ok(None);
+    }
+    match t.value(group.id)? {
+        Value::Node(group) => Ok(Instance::new(group, &place, object.span)),
+        _ => Ok(None),
     }
 }
 

@@ -12,7 +12,7 @@ use super::xml::numbers;
 use crate::mesh::vol;
 
 /// Mitsuba's plugins and Aureole's words for them; the constant ones become spectra.
-const KINDS: &[(&str, &str)] = &[
+pub(super) const KINDS: &[(&str, &str)] = &[
     ("bitmap", "bitmap"),
     ("checkerboard", "checkerboard"),
     ("mesh_attribute", "mesh_attribute"),
@@ -32,11 +32,17 @@ pub(super) fn translate<'a>(
 ) -> Result<Value, SceneError> {
     let kind = t.kind(&scope, Family::Texture, KINDS)?;
     match kind {
-        "constant" => return constant(&mut scope).map(Value::Spectrum),
+        "constant" => {
+            let spectrum = constant(&mut scope)?;
+            t.leave(&scope);
+            return Ok(Value::Spectrum(spectrum));
+        }
         "volume" => {
-            return match (scope.take_named("volume"), scope.values.try_spectrum("volume")?) {
-                (Some(volume), _) => volume_texture(t, Scope::new(t.tree, t.tree.get(volume.id))?),
-                (None, constant) => Ok(Value::Spectrum(constant.unwrap_or(SpectrumSource::Uniform(0.75)))),
+            let (volume, constant) = (scope.take_named("volume"), scope.spectrum("volume")?);
+            t.leave(&scope);
+            return match volume {
+                Some(volume) => volume_texture(t, Scope::new(t.tree, t.tree.get(volume.id))?),
+                None => Ok(Value::Spectrum(constant.unwrap_or(SpectrumSource::Uniform(0.75)))),
             };
         }
         "bitmap" => {
@@ -66,8 +72,9 @@ fn volume_texture<'a>(t: &mut Translator<'a, '_, '_>, mut scope: Scope<'a>) -> R
     {
         let value = match scope.take_named("value") {
             Some(child) => Some(t.value(child.id)?),
-            None => scope.values.try_spectrum("value")?.map(Value::Spectrum),
+            None => scope.spectrum("value")?.map(Value::Spectrum),
         };
+        t.leave(&scope);
         return Ok(value.unwrap_or(Value::Spectrum(SpectrumSource::Uniform(1.0))));
     }
     let (path, at) = t.path(&mut scope, "filename")?;
@@ -127,6 +134,7 @@ fn constant(scope: &mut Scope<'_>) -> Result<SpectrumSource, SceneError> {
         "d65" => {
             let scale = scope.float("scale")?.or(scope.float("value")?).unwrap_or(1.0) as f32;
             let color = scope.values.vec3("color", [1.0; 3])?;
+            scope.take("color");
             Ok(SpectrumSource::Rgb(color.map(|x| x * scale)))
         }
         "blackbody" => {
@@ -139,8 +147,8 @@ fn constant(scope: &mut Scope<'_>) -> Result<SpectrumSource, SceneError> {
         }
         "regular" => regular(scope),
         "irregular" => irregular(scope),
-        "srgb" => Ok(scope.values.try_spectrum("color")?.unwrap_or(SpectrumSource::Uniform(1.0))),
-        _ => Ok(scope.values.try_spectrum("value")?.unwrap_or(SpectrumSource::Uniform(1.0))),
+        "srgb" => Ok(scope.spectrum("color")?.unwrap_or(SpectrumSource::Uniform(1.0))),
+        _ => Ok(scope.spectrum("value")?.unwrap_or(SpectrumSource::Uniform(1.0))),
     }
 }
 

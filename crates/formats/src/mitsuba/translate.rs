@@ -20,6 +20,7 @@ pub(super) fn translate(parsed: &Parsed, context: &mut Context<'_>) -> Result<Sc
         search: &parsed.search,
         context,
         scene: SceneDesc::default(),
+        first_film: None,
         state: vec![State::New; parsed.tree.len()],
         depth: 0,
         gathered: 0,
@@ -77,6 +78,8 @@ pub(super) struct Translator<'a, 'c, 'r> {
     search: &'a SearchPath,
     pub(super) context: &'c mut Context<'r>,
     pub(super) scene: SceneDesc,
+    /// The film of the first sensor.
+    pub(super) first_film: Option<ObjectId>,
     state: Vec<State>,
     depth: usize,
     /// Shapes met while merged ones were gathered.
@@ -88,6 +91,10 @@ pub(super) struct Translator<'a, 'c, 'r> {
 impl<'a> Translator<'a, '_, '_> {
     /// Translates the scene's own children.
     fn root(&mut self, root: ObjectId) -> Result<(), SceneError> {
+        for param in self.tree.get(root).values.iter() {
+            let message = format!("`{}` of the scene itself is ignored", param.name);
+            self.context.report.warn(message, param.span);
+        }
         for child in &self.tree.get(root).children {
             // An error in one child leaves the others alone.
             let result = resolve(self.tree, child).and_then(|nested| self.root_child(nested.id, nested.tag));
@@ -105,7 +112,12 @@ impl<'a> Translator<'a, '_, '_> {
             Tag::Shape => shape::root(self, id),
             Tag::Emitter => emitter::root(self, id),
             // Materials, textures and media do nothing until something refers to them.
-            _ => Ok(()),
+            Tag::Bsdf | Tag::Texture | Tag::Spectrum | Tag::Medium | Tag::Phase | Tag::Volume => Ok(()),
+            Tag::Scene | Tag::Film | Tag::Filter | Tag::Sampler => {
+                let message = format!("a <{}> outside of a sensor is ignored", tag.word());
+                self.context.report.warn(message, self.tree.get(id).span);
+                Ok(())
+            }
         }
     }
 
@@ -124,7 +136,8 @@ impl<'a> Translator<'a, '_, '_> {
         let limit = self.context.options.limits.max_nesting;
         if self.depth >= limit {
             let (what, found) = ("nesting of objects".to_owned(), self.depth as u64 + 1);
-            return Err(SceneError::Limit { what, found, limit: limit as u64, at: object.span });
+            let name = Some("max-nesting");
+            return Err(SceneError::Limit { what, found, limit: limit as u64, name, at: object.span });
         }
         self.state[id.index()] = State::Open;
         self.depth += 1;
@@ -154,7 +167,7 @@ impl<'a> Translator<'a, '_, '_> {
         self.gathered += 1;
         let (found, limit) = (self.gathered, FREE + TIMES * self.tree.len() as u64);
         let what = "the number of merged shapes".to_owned();
-        if found > limit { Err(SceneError::Limit { what, found, limit, at }) } else { Ok(()) }
+        if found > limit { Err(SceneError::Limit { what, found, limit, name: None, at }) } else { Ok(()) }
     }
 
     /// A child as a parameter of the node.
@@ -204,6 +217,18 @@ impl<'a> Translator<'a, '_, '_> {
         let mut node = Node::new(family, kind, scope.out, scope.object.span);
         node.name.clone_from(&scope.object.id);
         Ok(self.scene.add(node))
+    }
+
+    /// Warns about what is left of an object that does not become a node.
+    pub(super) fn leave(&mut self, scope: &Scope<'_>) {
+        for param in scope.values.iter() {
+            let message = format!("`{}` of {} is ignored", param.name, scope.describe());
+            self.context.report.warn(message, param.span);
+        }
+        for child in &scope.children {
+            let message = format!("<{}> inside of {} is ignored", child.tag.word(), scope.describe());
+            self.context.report.warn(message, child.span);
+        }
     }
 
     /// Aureole's word for a plugin, from a family's table.

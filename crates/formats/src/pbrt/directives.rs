@@ -9,6 +9,7 @@ use super::color::{self, ColorSpace};
 use super::lexer::{Lexer, Spanned, Token};
 use super::params::{self, ParamSet, number};
 use super::state::{PendingCamera, Reader, Saved, unknown};
+use super::version3;
 use crate::file;
 
 /// All directives, for "did you mean".
@@ -56,6 +57,10 @@ const DIRECTIVES: &[&str] = &[
     "WorldEnd",
 ];
 
+/// What pbrt's accelerators are told.
+const ACCELERATOR: [&str; 7] =
+    ["emptybonus", "intersectcost", "maxdepth", "maxnodeprims", "maxprims", "splitmethod", "traversalcost"];
+
 impl Reader<'_, '_> {
     /// Carries out all directives of a text. Those that make no sense are collected in the report while reading goes on;
     /// where the grammar is broken, it ends.
@@ -69,6 +74,10 @@ impl Reader<'_, '_> {
                 Ok(()) => {}
                 Err(error @ (SceneError::Syntax { .. } | SceneError::Limit { .. })) => return Err(error),
                 Err(error) => {
+                    if let Some(last) = Some(&error).filter(|_| self.is_version3).and_then(version3::give_up)
+                    {
+                        return Err(last);
+                    }
                     self.context.report.collect(error)?;
                     skip_to_directive(&mut lexer)?;
                 }
@@ -184,6 +193,8 @@ impl Reader<'_, '_> {
                 let value_type = text(lexer, at)?.0;
                 let (class, end) = text(lexer, at)?;
                 let params = self.parameters(lexer, at.to(end), "texture")?;
+                let kind = if value_type == "color" { &value_type } else { &class };
+                self.look_for_version3("Texture", kind, &params);
                 self.texture_directive(name, &value_type, &class, &params)
             }
             "Attribute" => {
@@ -212,6 +223,7 @@ impl Reader<'_, '_> {
             _ => "",
         };
         let params = self.parameters(lexer, at, target)?;
+        self.look_for_version3(word, kind, &params);
         match word {
             "Camera" => {
                 let world_from_camera = self.moving_ctm(at)?.map(|t| t.inverse());
@@ -222,7 +234,13 @@ impl Reader<'_, '_> {
             "Sampler" => self.sampler(kind, &params)?,
             "PixelFilter" => self.filter(kind, &params)?,
             "Integrator" => self.integrator(kind, &params)?,
-            "Accelerator" => {} // Aureole has its own
+            "Accelerator" => {
+                // Aureole has its own.
+                for name in ACCELERATOR {
+                    params.get(name);
+                }
+                params.finish("Accelerator", self.context.report);
+            }
             "Shape" => self.shape(kind, &params)?,
             "LightSource" => self.light(kind, &params)?,
             "AreaLightSource" => {
@@ -268,7 +286,8 @@ impl Reader<'_, '_> {
         let limit = self.limits().max_nesting;
         if self.saved.len() >= limit {
             let found = self.saved.len() as u64 + 1;
-            return Err(SceneError::Limit { what: "nested blocks".into(), found, limit: limit as u64, at });
+            let (what, name) = ("nested blocks".into(), Some("max-nesting"));
+            return Err(SceneError::Limit { what, found, limit: limit as u64, name, at });
         }
         self.saved.push((saved, at));
         Ok(())
@@ -295,14 +314,15 @@ impl Reader<'_, '_> {
 
     fn include(&mut self, lexer: &mut Lexer<'_>, at: Span) -> Result<(), SceneError> {
         let (name, at) = text(lexer, at)?;
-        let path = self.folder.join(&name);
+        let path = self.file(&name);
         if self.open_files.contains(&path) {
             return Err(SceneError::invalid(format!("`{name}` includes itself"), at));
         }
         let limit = self.limits().max_include_depth;
         if self.open_files.len() >= limit {
             let found = self.open_files.len() as u64 + 1;
-            return Err(SceneError::Limit { what: "nested includes".into(), found, limit: limit as u64, at });
+            let (what, name) = ("nested includes".into(), Some("max-include-depth"));
+            return Err(SceneError::Limit { what, found, limit: limit as u64, name, at });
         }
         let limits = *self.limits();
         let (source, text) = file::read_text(&path, &limits, self.context.sources, at)?;

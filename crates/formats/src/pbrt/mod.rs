@@ -19,6 +19,7 @@ mod quads;
 mod shapes;
 mod state;
 mod textures;
+mod version3;
 
 #[cfg(test)]
 mod tests;
@@ -47,8 +48,7 @@ fn read(input: Input<'_>, context: &mut Context<'_>) -> Result<SceneDesc, SceneE
         Some(text) => (context.sources.add_text(input.path, text), text.into()),
         None => file::read_text(input.path, &context.options.limits, context.sources, Span::NONE)?,
     };
-    let folder = input.path.parent().map(Into::into).unwrap_or_default();
-    let mut reader = Reader::new(context, folder);
+    let mut reader = Reader::new(context, input.path);
     reader.open_files.push(input.path.to_owned());
     let before = reader.context.report.errors.len();
     reader.run(&text, source)?;

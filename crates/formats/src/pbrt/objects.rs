@@ -1,6 +1,6 @@
 //! Objects, and their instances, which may move.
 
-use aureole_desc::{Family, NodeId, Params, SceneError, Span, Value};
+use aureole_desc::{Family, Instance, NodeId, Params, SceneError, Span, Value};
 use aureole_math::Transform;
 
 use super::state::{OpenObject, Reader, Saved, unknown};
@@ -38,6 +38,11 @@ impl Reader<'_, '_> {
 
     /// Adds an instance of a group, which may move.
     pub(super) fn instance(&mut self, group: NodeId, [start, end]: [Transform; 2], at: Span) {
+        let still = Instance::new(group, &start, at).filter(|_| start == end);
+        if let Some(instance) = still {
+            self.desc.instances.push(instance);
+            return;
+        }
         let mut params = Params::new();
         params.push("group", Value::Node(group), at);
         params.push("world_from_object", Value::Transform(start), at);

@@ -12,7 +12,7 @@ const SAMPLERS: [&str; 7] =
 
 impl Reader<'_, '_> {
     pub(super) fn film_directive(&mut self, kind: &str, params: ParamSet) -> Result<(), SceneError> {
-        if !matches!(kind, "rgb" | "gbuffer" | "spectral") {
+        if kind != "rgb" {
             self.warn(format!("film `{kind}` is taken as `rgb`"), params.span);
         }
         self.film = Some(params);

@@ -179,6 +179,19 @@ impl ParamSet {
         Some(found)
     }
 
+    /// The names of all parameters, and where they are, without taking note.
+    pub(super) fn names(&self) -> impl Iterator<Item = (&str, Span)> {
+        self.list.iter().map(|p| (p.name.as_str(), p.span))
+    }
+
+    /// The first word of a parameter, without taking note.
+    pub(super) fn peek_text(&self, name: &str) -> Option<&str> {
+        match &self.list.iter().find(|p| p.name == name)?.values {
+            Values::Texts(list) => list.first().map(String::as_str),
+            _ => None,
+        }
+    }
+
     /// Takes all parameters as used: for what is not rendered, and warned about as a whole.
     pub(super) fn touch_all(&self) {
         self.list.iter().for_each(|p| p.used.set(true));
@@ -248,9 +261,9 @@ impl ParamSet {
         }
     }
 
-    /// A file name, counted from the scene's folder.
+    /// A file, beside the scene or in the working directory.
     pub(super) fn path(&self, name: &str, reader: &Reader<'_, '_>) -> Result<Option<PathBuf>, SceneError> {
-        Ok(self.text(name)?.map(|text| reader.folder.join(text)))
+        Ok(self.text(name)?.map(|text| reader.file(text)))
     }
 
     /// Where a parameter is, or the directive.
@@ -366,7 +379,7 @@ fn bad(param: &PbrtParam, wanted: &str) -> SceneError {
     SceneError::BadParam { param: param.name.clone(), wanted: wanted.to_owned(), found, at: param.span }
 }
 
-/// Pairs of wavelength and value.
+/// Pairs of wavelength and value; beyond them the spectrum is zero.
 fn table(numbers: &[f64], param: &PbrtParam) -> Result<Tabulated, SceneError> {
     let lambda: Vec<f32> = numbers.iter().step_by(2).map(|&x| x as f32).collect();
     let values: Vec<f32> = numbers.iter().skip(1).step_by(2).map(|&x| x as f32).collect();
@@ -375,22 +388,7 @@ fn table(numbers: &[f64], param: &PbrtParam) -> Result<Tabulated, SceneError> {
     if numbers.is_empty() || lambda.len() != values.len() || !ascends || !is_finite {
         return Err(bad(param, "pairs of ascending wavelength and value"));
     }
-    Ok(to_the_ends(Tabulated { lambda, values }))
-}
-
-/// pbrt continues the first and last values to the ends of the spectrum.
-fn to_the_ends(mut table: Tabulated) -> Tabulated {
-    if let (Some(&first), Some(&last)) = (table.values.first(), table.values.last()) {
-        if table.lambda[0] > 360.0 {
-            table.lambda.insert(0, 360.0);
-            table.values.insert(0, first);
-        }
-        if table.lambda[table.lambda.len() - 1] < 830.0 {
-            table.lambda.push(830.0);
-            table.values.push(last);
-        }
-    }
-    table
+    Ok(Tabulated { lambda, values })
 }
 
 /// A spectrum by name, or from a file of pairs.
@@ -398,7 +396,7 @@ fn named(name: &str, param: &PbrtParam, reader: &Reader<'_, '_>) -> Result<Spect
     if let Some(found) = named_spectrum(name) {
         return Ok(SpectrumSource::Tabulated(found));
     }
-    let path = reader.folder.join(name);
+    let path = reader.file(name);
     if !path.is_file() {
         return Err(SceneError::UnknownName {
             what: "spectrum",
@@ -408,5 +406,5 @@ fn named(name: &str, param: &PbrtParam, reader: &Reader<'_, '_>) -> Result<Spect
         });
     }
     let table = spectrum_file::read(&path, reader.limits(), param.span)?;
-    Ok(SpectrumSource::Tabulated(Arc::new(to_the_ends(table))))
+    Ok(SpectrumSource::Tabulated(Arc::new(table)))
 }

@@ -1,6 +1,6 @@
 //! What a pbrt file builds up: the graphics state, named things, and the description.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use aureole_desc::{Family, Limits, Node, NodeId, Params, SceneDesc, SceneError, Span, Value};
@@ -10,6 +10,7 @@ use rustc_hash::FxHashMap;
 use super::color::ColorSpace;
 use super::params::{ParamSet, PbrtParam};
 use crate::Context;
+use crate::file::SearchPath;
 
 /// What directives change and `AttributeEnd` restores.
 #[derive(Clone)]
@@ -50,7 +51,7 @@ pub(super) struct OpenObject {
 pub(super) struct Reader<'a, 'c> {
     pub context: &'a mut Context<'c>,
     /// Relative names count from the main file's folder.
-    pub folder: PathBuf,
+    search: SearchPath,
     pub desc: SceneDesc,
     pub state: GraphicsState,
     pub saved: Vec<(Saved, Span)>,
@@ -70,6 +71,8 @@ pub(super) struct Reader<'a, 'c> {
     pub film: Option<ParamSet>,
     pub flags: Flags,
     pub camera: Option<PendingCamera>,
+    /// Whether something showed that the scene is of pbrt version 3.
+    pub is_version3: bool,
 }
 
 /// What `Option` sets and the picture depends on.
@@ -98,10 +101,10 @@ pub(super) struct PendingCamera {
 }
 
 impl<'a, 'c> Reader<'a, 'c> {
-    pub(super) fn new(context: &'a mut Context<'c>, folder: PathBuf) -> Self {
+    pub(super) fn new(context: &'a mut Context<'c>, main: &Path) -> Self {
         Self {
             context,
-            folder,
+            search: SearchPath::beside(main),
             desc: SceneDesc::default(),
             state: GraphicsState {
                 ctm: [Transform::IDENTITY; 2],
@@ -125,6 +128,7 @@ impl<'a, 'c> Reader<'a, 'c> {
             film: None,
             flags: Flags::default(),
             camera: None,
+            is_version3: false,
         }
     }
 
@@ -134,6 +138,11 @@ impl<'a, 'c> Reader<'a, 'c> {
 
     pub(super) fn warn(&mut self, message: impl Into<String>, at: Span) {
         self.context.report.warn(message, at);
+    }
+
+    /// A file by the name that the scene gives it.
+    pub(super) fn file(&self, name: &str) -> PathBuf {
+        self.search.resolve(name)
     }
 
     /// Adds a node.

@@ -59,8 +59,9 @@ impl Reader<'_, '_> {
             }
             "imagemap" => ("bitmap", self.image(given, ty)?),
             "dots" => {
+                // pbrt's pictures have `outside` in the dots and `inside` around them.
                 let mut params =
-                    self.slots(given, ty, &[("inside", "inside", 1.0), ("outside", "outside", 0.0)])?;
+                    self.slots(given, ty, &[("inside", "outside", 1.0), ("outside", "inside", 0.0)])?;
                 self.mapping(given, Transform::IDENTITY, &mut params)?;
                 ("dots", params)
             }
@@ -213,7 +214,7 @@ impl Reader<'_, '_> {
             at,
         })?;
         let mut params = Params::new();
-        params.push("filename", Value::Path(path), given.at("filename"));
+        params.push("filename", Value::Path(path.clone()), given.at("filename"));
         let filter = match given.text("filter")?.unwrap_or("bilinear") {
             "point" => "nearest",
             "ewa" | "EWA" => "ewa",
@@ -243,7 +244,15 @@ impl Reader<'_, '_> {
             }
         };
         params.push("wrap", Value::String(wrap.into()), at);
-        encoding(given.text("encoding")?.unwrap_or("sRGB"), given.at("encoding"), &mut params)?;
+        let mut encoding = given.text("encoding")?.unwrap_or("sRGB");
+        if encoding != "sRGB" && is_always_srgb(&path) {
+            self.warn(
+                "pictures of this format are always sRGB: `encoding` does not count",
+                given.at("encoding"),
+            );
+            encoding = "sRGB";
+        }
+        set_encoding(encoding, given.at("encoding"), &mut params)?;
         params.push("scale", Value::Float(given.float("scale", 1.0)?), at);
         params.push("invert", Value::Bool(given.bool("invert", false)?), at);
         self.mapping(given, Transform::IDENTITY, &mut params)?;
@@ -273,8 +282,14 @@ fn is_png_with_opacity(path: &Path) -> bool {
     read.is_ok() && header[25] == 6
 }
 
+/// Whether pbrt pays no attention to `encoding`, going by the name as it does.
+fn is_always_srgb(path: &Path) -> bool {
+    let suffix = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    matches!(suffix.as_str(), "jpg" | "jpeg" | "tga" | "bmp" | "ppm" | "pgm" | "pnm")
+}
+
 /// `sRGB`, `linear` or `gamma 2.2`.
-fn encoding(text: &str, at: Span, params: &mut Params) -> Result<(), SceneError> {
+fn set_encoding(text: &str, at: Span, params: &mut Params) -> Result<(), SceneError> {
     let mut words = text.split_whitespace();
     let name = match (words.next(), words.next().map(str::parse::<f64>)) {
         (Some("sRGB"), None) => "auto",

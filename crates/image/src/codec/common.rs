@@ -56,8 +56,8 @@ macro_rules! decoders {
 }
 
 decoders! {
-    decode_png: Png, decode_jpeg: Jpeg, decode_hdr: Hdr, decode_pnm: Pnm,
-    decode_bmp: Bmp, decode_tiff: Tiff, decode_webp: WebP, decode_tga: Tga,
+    decode_png: Png, decode_jpeg: Jpeg, decode_pnm: Pnm,
+    decode_bmp: Bmp, decode_webp: WebP, decode_tga: Tga,
 }
 
 /// An image's size as the formats of the past count it.

@@ -6,9 +6,11 @@
 mod common;
 mod exr;
 mod format;
+mod hdr;
 mod pfm;
 mod pnm;
 mod probe;
+mod tiff;
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -111,7 +113,7 @@ static CODECS: &[Codec] = &[
         format: Format::Hdr,
         suffixes: &["hdr", "pic", "rgbe"],
         recognises: |bytes| bytes.starts_with(b"#?"),
-        decode: common::decode_hdr,
+        decode: hdr::decode,
         encode: Some(common::encode_hdr),
     },
     Codec {
@@ -138,8 +140,8 @@ static CODECS: &[Codec] = &[
     Codec {
         format: Format::Tiff,
         suffixes: &["tif", "tiff"],
-        recognises: |bytes| bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*"),
-        decode: common::decode_tiff,
+        recognises: tiff::recognises,
+        decode: tiff::decode,
         encode: None,
     },
     Codec {

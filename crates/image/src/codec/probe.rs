@@ -6,7 +6,7 @@ use std::path::Path;
 
 use ::image::{ImageDecoder, ImageReader};
 
-use super::pfm;
+use super::{hdr, pfm, tiff};
 
 /// What a file says of its picture before it is decoded; nothing of it has been checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,11 +28,14 @@ impl Probe {
 
 /// Looks at a file's header; `None` when it is no picture that can be read.
 pub fn probe_image(path: &Path) -> Option<Probe> {
-    let mut start = [0; 64];
-    let n = File::open(path).ok()?.take(64).read(&mut start).ok()?;
-    match &start[..n] {
+    // Enough for a header of text with all its comments.
+    let mut start = Vec::new();
+    File::open(path).ok()?.take(1 << 16).read_to_end(&mut start).ok()?;
+    match &start[..] {
         [0x76, 0x2f, 0x31, 0x01, ..] => probe_exr(path),
         start if start.starts_with(b"PF") || start.starts_with(b"Pf") => pfm::probe(start),
+        start if start.starts_with(b"#?") => hdr::probe(start),
+        start if tiff::recognises(start) => tiff::probe(BufReader::new(File::open(path).ok()?)),
         _ => {
             let decoder = ImageReader::open(path).ok()?.with_guessed_format().ok()?.into_decoder().ok()?;
             let (width, height) = decoder.dimensions();

@@ -154,7 +154,13 @@ impl Layer {
         let text = params.try_string("layers")?.unwrap_or_default();
         let found = text.split(',').count() as u64;
         if found > MOST {
-            return Err(SceneError::Limit { what: "layers of an image".into(), found, limit: MOST, at });
+            return Err(SceneError::Limit {
+                what: "layers of an image".into(),
+                found,
+                limit: MOST,
+                name: None,
+                at,
+            });
         }
         let mut layers: Vec<Self> = Vec::new();
         for pair in text.split(',').map(str::trim).filter(|pair| !pair.is_empty()) {

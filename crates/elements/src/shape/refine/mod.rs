@@ -140,7 +140,13 @@ impl Refinement {
 }
 
 fn too_many(found: u64, limit: u64) -> SceneError {
-    SceneError::Limit { what: "triangles of a refined mesh".into(), found, limit, at: Span::NONE }
+    SceneError::Limit {
+        what: "triangles of a refined mesh".into(),
+        found,
+        limit,
+        name: Some("max-mesh-elements"),
+        at: Span::NONE,
+    }
 }
 
 /// The sharp edges and their sharpness.

@@ -82,10 +82,6 @@ fn shapes() {
             r#"<shape type="cube"><medium name="interior" type="homogeneous"><phase type="hg"><float name="g" value="0.5"/></phase></medium></shape>"#,
             "cube(interior=homogeneous(phase=hg g=0.5))",
         ),
-        (
-            r#"<shape type="shapegroup" id="g"><shape type="cube"/><shape type="disk"/></shape><shape type="instance"><ref id="g"/></shape>"#,
-            "instance(group=group(shapes=[cube(), disk()]))",
-        ),
     ] {
         assert_eq!(show_shape(xml), text);
     }
@@ -95,6 +91,21 @@ fn shapes() {
         r#"<shape type="merge"><shape type="cube"/><shape type="merge"><shape type="disk"/></shape></shape>"#,
     );
     assert_eq!(scene.shapes.len(), 2);
+}
+
+#[test]
+fn instances_are_named_or_take_few_bytes() {
+    let group = r#"<shape type="shapegroup" id="g"><shape type="cube"/><shape type="disk"/></shape>"#;
+    let instance = |id: &str| {
+        format!(
+            r#"<shape type="instance"{id}><ref id="g"/><transform name="to_world"><translate x="2"/></transform></shape>"#
+        )
+    };
+    let (scene, warnings) = read(&format!("{group}{}{}", instance(""), instance(" id=\"i\"")));
+    assert!(warnings.is_empty() && scene.instances.len() == 1 && scene.shapes.len() == 1, "{warnings:?}");
+    assert_eq!(show(&scene, scene.instances[0].group), "group(shapes=[cube(), disk()])");
+    assert_eq!(scene.instances[0].world_from_object[0], [1.0, 0.0, 0.0, 2.0]);
+    assert!(show(&scene, scene.shapes[0]).starts_with("instance("));
 }
 
 #[test]
@@ -187,11 +198,11 @@ fn cameras_with_what_hangs_below_them() {
     let (scene, warnings) = read(
         r#"<sensor type="thinlens"><float name="aperture_radius" value="0.1"/><string name="focal_length" value="50mm"/>
             <film type="hdrfilm"><integer name="crop_offset_x" value="3"/><string name="pixel_format" value="luminance"/><rfilter type="lanczos"><integer name="lobes" value="2"/></rfilter></film>
-            <sampler type="multijitter"><integer name="sample_count" value="9"/></sampler></sensor>
+            <sampler type="multijitter"><integer name="sample_count" value="9"/><integer name="seed" value="3"/></sampler></sensor>
         <sensor type="perspective"><float name="fov" value="30"/><float name="focus_distance" value="9"/><film type="hdrfilm"/></sensor>
         <sensor type="orthographic"/>"#,
     );
-    assert!(warnings.is_empty(), "{warnings:?}");
+    assert!(warnings.iter().all(|warning| warning.contains("first sensor")), "{warnings:?}");
     let shown: Vec<_> = scene.cameras.iter().map(|&id| show(&scene, id)).collect();
     assert_eq!(
         shown,
@@ -217,7 +228,7 @@ fn cameras_beside_each_other_and_on_shapes() {
         </sensor>
         <shape type="disk"><sensor type="irradiancemeter"><film type="hdrfilm"/></sensor></shape>"#,
     );
-    assert!(warnings.is_empty(), "{warnings:?}");
+    assert!(warnings.iter().all(|warning| warning.contains("first sensor")), "{warnings:?}");
     let shown: Vec<_> = scene.cameras.iter().map(|&id| show(&scene, id)).collect();
     // The first one's axis is that of a film of 768 by 576.
     let first = "perspective(fov_axis=x fov=106.26020470831195)";
@@ -244,6 +255,8 @@ fn integrators() {
             "path(see_through=false layers=_arg_0:xyz,m2__arg_0:xyz2)",
         ),
         (r#"<integrator type="ptracer"/>"#, "path(see_through=false)"),
+        (r#"<integrator type="direct_projective"><integer name="sppi" value="4"/></integrator>"#, "direct()"),
+        (r#"<integrator type="prb_projective"><string name="guiding" value="grid"/></integrator>"#, "path(see_through=false)"),
         (r#"<integrator type="depth"/>"#, "depth(from_near_clip=true)"),
         (r#"<integrator type="volpath"/>"#, "path()"),
         (

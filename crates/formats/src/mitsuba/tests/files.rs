@@ -97,6 +97,25 @@ fn bitmaps_are_turned_round() {
     );
 }
 
+/// What Mitsuba's parser lets pass: a blank first line, a document type, dashes in comments, ampersands; and places stay right.
+#[test]
+fn xml_that_is_not_quite_well_formed_is_read() {
+    let scene = |inside: &str| {
+        format!(
+            "\n<?xml version=\"1.0\"?>\n<!DOCTYPE scene [<!ENTITY a \"b\">]>\n<!-- a -- größer -->\
+             <scene version=\"3.0.0\"><!---- & ----><bsdf type=\"plastic\" id=\"Salt & Pepper &amp; &a;\"/>\
+             <shape type=\"cube\"><ref id=\"Salt &amp; Pepper & &a;\"/></shape>\n{inside}</scene>"
+        )
+    };
+    let folder =
+        folder(&[("s.xml", &scene("")), ("wrong.xml", &scene("<!-- ö -- --><shape type=\"cub\"/>"))]);
+    let (scene, report) = read(&folder.path().join("s.xml")).unwrap();
+    assert_eq!(show(&scene, scene.shapes[0]), "cube(bsdf=plastic())");
+    assert!(report.warnings.is_empty());
+    let wrong = read(&folder.path().join("wrong.xml")).unwrap_err();
+    assert_eq!(wrong, "wrong.xml:5:14: unknown shape `cub`");
+}
+
 #[test]
 fn files_that_are_missing_or_go_in_circles() {
     let folder = folder(&[

@@ -3,6 +3,7 @@
 mod errors;
 mod families;
 mod files;
+mod nothing_lost;
 
 use aureole_desc::{Node, NodeId, Report, SceneDesc, SceneError, Sources, Value};
 

@@ -3,12 +3,11 @@
 use aureole_desc::{SceneError, SourceId, Span};
 use roxmltree::{Document, Error};
 
-/// Parses a text. Documents that define entities are refused: a few of them can grow without bounds.
+/// Parses a text that [`tidy`](super::tidy::tidy) has gone over.
 pub(super) fn parse(text: &str, source: SourceId) -> Result<Document<'_>, SceneError> {
     Document::parse(text).map_err(|error| {
         let start = match &error {
             Error::UnclosedRootNode => text.trim_end().len(),
-            Error::DtdDetected => text.find("<!DOCTYPE").unwrap_or(0),
             other => offset(text, other.pos().row, other.pos().col),
         };
         let message = match &error {
@@ -19,7 +18,6 @@ pub(super) fn parse(text: &str, source: SourceId) -> Result<Document<'_>, SceneE
             Error::NoRootNode => {
                 "no element in the file: a scene starts with <scene version=\"3.0.0\">".to_owned()
             }
-            Error::DtdDetected => "document type definitions are not allowed".to_owned(),
             other => without_position(&other.to_string()),
         };
         SceneError::syntax(message, Span::new(source, start, start + 1))

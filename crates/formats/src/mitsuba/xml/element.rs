@@ -1,10 +1,10 @@
 //! An XML element with its attributes, parameters put in.
 
-use aureole_desc::{SceneError, Span};
+use aureole_desc::{Report, SceneError, Span, suggest};
 use roxmltree::Node;
 
-use super::FileInfo;
 use super::define::Defines;
+use super::{FileInfo, tidy};
 
 /// An attribute after substitution.
 #[derive(Debug)]
@@ -35,7 +35,7 @@ impl<'a> Element<'a> {
         for attribute in node.attributes() {
             let value = attribute.range_value();
             let at = Span::new(file.source, value.start, value.end);
-            let text = defines.substitute(attribute.value(), at)?;
+            let text = defines.substitute(&tidy::restore(attribute.value()), at)?;
             attributes.push(Attribute { name: attribute.name(), text, at });
             end = end.max(attribute.range().end);
         }
@@ -91,6 +91,15 @@ impl<'a> Element<'a> {
         let param = self.get("name").unwrap_or(self.tag).to_owned();
         let found = format!("`{}`", self.get(attribute).unwrap_or(""));
         SceneError::BadParam { param, wanted: wanted.to_owned(), found, at: self.attribute_span(attribute) }
+    }
+
+    /// Warns about attributes that an object does not have.
+    pub(super) fn warn_others(&self, known: &[&str], report: &mut Report) {
+        for attribute in self.attributes.iter().filter(|attribute| !known.contains(&attribute.name)) {
+            let message = format!("attribute `{}` of <{}> is ignored", attribute.name, self.tag);
+            let near = suggest(attribute.name, known.iter().copied());
+            report.warn_with_help(message, near.map(|near| format!("did you mean `{near}`?")), attribute.at);
+        }
     }
 
     /// Refuses attributes that the element does not have.

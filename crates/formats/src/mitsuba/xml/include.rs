@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use aureole_desc::{SceneError, Span};
 
 use super::element::Element;
-use super::{FileInfo, Parser, document, upgrade};
+use super::{FileInfo, Parser, document, tidy, upgrade};
 use crate::file;
 use crate::mitsuba::tree::ObjectId;
 
@@ -21,7 +21,8 @@ impl Parser<'_, '_> {
         let limit = self.context.options.limits.max_include_depth;
         if self.open.len() > limit {
             let (what, found) = ("depth of includes".to_owned(), self.open.len() as u64);
-            return Err(SceneError::Limit { what, found, limit: limit as u64, at });
+            let name = Some("max-include-depth");
+            return Err(SceneError::Limit { what, found, limit: limit as u64, name, at });
         }
         // The same file by another way is still a cycle.
         let identity = path.canonicalize().unwrap_or_else(|_| path.to_owned());
@@ -33,7 +34,8 @@ impl Parser<'_, '_> {
             Some(text) => (self.context.sources.add_text(path, text), text.into()),
             None => file::read_text(path, &self.context.options.limits, self.context.sources, at)?,
         };
-        let document = document::parse(&text, source)?;
+        let tidied = tidy::tidy(&text);
+        let document = document::parse(&tidied, source)?;
         let root = document.root_element();
         let info =
             FileInfo { source, path: path.to_owned(), legacy: upgrade::is_legacy(root.attribute("version")) };
@@ -82,7 +84,8 @@ impl Parser<'_, '_> {
         let (found, limit) = (self.search.len() as u64, self.context.options.limits.max_include_depth as u64);
         let what = "the number of search folders".to_owned();
         if found > limit {
-            return Err(SceneError::Limit { what, found, limit, at: element.span() });
+            let name = Some("max-include-depth");
+            return Err(SceneError::Limit { what, found, limit, name, at: element.span() });
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ mod document;
 mod element;
 mod include;
 mod property;
+mod tidy;
 mod transform;
 mod upgrade;
 
@@ -114,7 +115,11 @@ impl Parser<'_, '_> {
             tag => Tag::parse(tag).is_some(),
         };
         if is_object {
+            element.warn_others(&["type", "id", "name", "version"], self.context.report);
             return self.object(node, &element, file, parent);
+        }
+        if element.tag() != "transform" {
+            self.warn_inside(node, file);
         }
         match element.tag() {
             "default" => self.default(&element),
@@ -123,7 +128,9 @@ impl Parser<'_, '_> {
             "alias" => self.alias(&element),
             "ref" => self.reference(&element, file, parent),
             "transform" => {
+                element.allow(&["name"])?;
                 let (name, value) = transform::parse(node, &element, file, &mut self.defines)?;
+                node.children().filter(Node::is_element).for_each(|step| self.warn_inside(step, file));
                 self.set(parent, name, value, &element, file)
             }
             _ => {
@@ -131,6 +138,18 @@ impl Parser<'_, '_> {
                 let (name, value) = property::parse(&element, inside_emitter, self)?;
                 self.set(parent, name, value, &element, file)
             }
+        }
+    }
+
+    /// Warns about what stands inside of an element that has only attributes.
+    fn warn_inside(&mut self, node: Node<'_, '_>, file: &FileInfo) {
+        let is_something = |child: &Node<'_, '_>| {
+            child.is_element() || child.text().is_some_and(|text| !text.trim().is_empty())
+        };
+        for child in node.children().filter(is_something) {
+            let at = Span::new(file.source, child.range().start, child.range().end);
+            let message = format!("what is inside of <{}> is ignored", node.tag_name().name());
+            self.context.report.warn(message, at);
         }
     }
 
@@ -168,6 +187,7 @@ impl Parser<'_, '_> {
                 what,
                 found: self.depth as u64 + 1,
                 limit: limit as u64,
+                name: Some("max-nesting"),
                 at: element.span(),
             });
         }
@@ -212,12 +232,14 @@ impl Parser<'_, '_> {
     }
 
     fn default(&mut self, element: &Element<'_>) -> Result<(), SceneError> {
+        element.allow(&["name", "value"])?;
         let (name, value) = (element.required("name")?, element.required("value")?);
         self.defines.set_default(name, value);
         self.context.options.limits.check_params(self.defines.len(), element.span())
     }
 
     fn alias(&mut self, element: &Element<'_>) -> Result<(), SceneError> {
+        element.allow(&["id", "as"])?;
         let (id, alias) = (element.required("id")?, element.required("as")?);
         self.tree.add_alias(id, alias);
         Ok(())
@@ -229,6 +251,7 @@ impl Parser<'_, '_> {
         file: &FileInfo,
         parent: ObjectId,
     ) -> Result<(), SceneError> {
+        element.allow(&["id", "name"])?;
         let id = element.required("id")?;
         let name = element
             .get("name")

@@ -37,7 +37,10 @@ pub(super) fn parse(
         "integer" => Value::Int(integer(element)?),
         "boolean" => Value::Bool(boolean(element)?),
         "string" => Value::String(plain(element)?.to_owned()),
-        "point" | "vector" => Value::Vec3(vector(element, 0.0)?),
+        "point" | "vector" => {
+            element.allow(&["name", "value", "x", "y", "z"])?;
+            Value::Vec3(vector(element, 0.0)?)
+        }
         "rgb" | "color" => Value::Spectrum(SpectrumSource::Rgb(rgb(element)?)),
         "srgb" => Value::Spectrum(SpectrumSource::Rgb(rgb(element)?.map(srgb_to_linear))),
         "spectrum" => Value::Spectrum(spectrum(element, inside_emitter, parser)?),

@@ -143,8 +143,12 @@ fn objects_become_groups_and_instances() {
     let desc = good(
         "WorldBegin ObjectBegin \"a\" Shape \"sphere\" Shape \"disk\" ObjectEnd Translate 1 0 0 ObjectInstance \"a\"",
     );
-    assert_eq!(desc.shapes.len(), 1);
-    assert_eq!(desc[desc.shapes[0]].kind, "instance");
+    assert!(desc.shapes.is_empty());
+    let [instance] = desc.instances[..] else { panic!("{:?}", desc.instances) };
+    assert_eq!(
+        (desc[instance.group].kind.as_str(), instance.world_from_object[0]),
+        ("group", [1.0, 0.0, 0.0, 1.0])
+    );
 }
 
 #[test]

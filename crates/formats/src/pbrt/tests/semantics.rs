@@ -3,7 +3,7 @@
 use aureole_desc::{Node, SceneDesc, Sources, Value};
 use aureole_spectrum::{SpectrumRole, SpectrumSource};
 
-use super::{good, mistake, warnings};
+use super::{good, mistake, read, warnings};
 use crate::{LoadOptions, load};
 
 fn shape(desc: &SceneDesc, i: usize) -> &Node {
@@ -43,6 +43,109 @@ fn a_named_coordinate_system_sets_both_transforms() {
     assert!(warnings(text).iter().all(|warning| !warning.contains("move")), "{:?}", warnings(text));
     let unknown = warnings("WorldBegin CoordSysTransform \"b\" Shape \"sphere\"");
     assert!(unknown[0].contains("unknown coordinate system"), "{unknown:?}");
+}
+
+/// The first sign of version 3 says how such scenes are converted; a kind that version 4 does not know ends the reading.
+#[test]
+fn scenes_of_version_3_are_named_as_such() {
+    let signs = [
+        "Film \"image\" \"integer xresolution\" 8 WorldBegin",
+        "Sampler \"02sequence\" WorldBegin",
+        "PixelFilter \"box\" \"float xwidth\" 1 WorldBegin",
+        "WorldBegin LightSource \"infinite\" \"string mapname\" \"a.exr\"",
+    ];
+    for text in signs {
+        let found = read(text).report.warnings;
+        let about: Vec<_> = found.iter().filter(|w| w.message.contains("version 3")).collect();
+        assert_eq!(about.len(), 1, "{text}: {found:?}");
+        assert!(about[0].help.as_ref().is_some_and(|help| help.contains("pbrt --upgrade")), "{text}");
+    }
+    for text in [
+        "WorldBegin\nMaterial \"matte\" \"rgb Kd\" [1 1 1] Material \"plastic\"",
+        "WorldBegin\nMakeNamedMaterial \"a\" \"string type\" \"uber\"",
+        "WorldBegin\nShape \"cone\"",
+    ] {
+        let (message, (line, _)) = mistake(text);
+        assert!(message.contains("version 3") && message.contains("--upgrade") && line == 2, "{message}");
+    }
+    assert!(!mistake("WorldBegin Material \"difuse\"").0.contains("version 3"));
+    assert!(warnings("Film \"rgb\" PixelFilter \"box\" \"float xradius\" 1 WorldBegin WorldEnd").is_empty());
+}
+
+#[test]
+fn spectra_are_zero_beyond_their_tables() {
+    let desc =
+        good("WorldBegin Material \"diffuse\" \"spectrum reflectance\" [500 1 600 1] Shape \"sphere\"");
+    let diffuse = desc.nodes().map(|(_, node)| node).find(|node| node.kind == "diffuse").unwrap();
+    let [r, g, b] = rgb(diffuse.params.get("reflectance"));
+    assert!(g > 0.8 && r < 0.4 && b < 0.2, "{r} {g} {b}");
+}
+
+#[test]
+fn dots_show_what_is_called_outside() {
+    let desc = good("WorldBegin Texture \"d\" \"float\" \"dots\" \"float inside\" 2 \"float outside\" 3");
+    let dots = &named(&desc, "d")[0].params;
+    let value = |name| dots.get(name).cloned();
+    assert_eq!(
+        [value("inside"), value("outside")],
+        [3.0, 2.0].map(|x| Some(Value::Spectrum(SpectrumSource::Uniform(x))))
+    );
+}
+
+/// pbrt reads these through a library that knows no other curve.
+#[test]
+fn some_pictures_are_always_srgb() {
+    for (name, encoding) in [("a.png", "linear"), ("a.jpg", "auto"), ("a.TGA", "auto"), ("a.bmp", "auto")] {
+        let text = format!(
+            "WorldBegin Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"{name}\" \"string encoding\" \"linear\""
+        );
+        let desc = good(&text);
+        let found = named(&desc, "t")[0].params.get("encoding").cloned();
+        assert_eq!(found, Some(Value::String(encoding.into())), "{name}");
+        assert_eq!(warnings(&text).len(), usize::from(encoding == "auto"), "{name}");
+    }
+}
+
+/// Whatever a directive does not use is warned about by its name.
+#[test]
+fn parameters_that_nobody_knows_are_told() {
+    let before = [
+        "Camera \"perspective\"",
+        "Film \"rgb\"",
+        "Sampler \"halton\"",
+        "PixelFilter \"box\"",
+        "Accelerator \"bvh\"",
+    ];
+    let also =
+        ["Integrator \"path\"", "Camera \"orthographic\"", "Camera \"spherical\"", "Sampler \"stratified\""];
+    for directive in before.into_iter().chain(also) {
+        let found = warnings(&format!("{directive} \"float zzz\" 1 WorldBegin"));
+        assert!(found.iter().any(|warning| warning.contains("`zzz`")), "{directive}: {found:?}");
+    }
+    let shapes = ["sphere", "disk", "cylinder"].map(|kind| format!("Shape \"{kind}\""));
+    let lights = ["point", "spot", "distant", "infinite"].map(|kind| format!("LightSource \"{kind}\""));
+    let materials =
+        ["diffuse", "conductor", "dielectric", "thindielectric", "coateddiffuse", "coatedconductor"]
+            .map(|kind| format!("Material \"{kind}\""));
+    let textures =
+        ["constant", "scale", "mix", "bilerp", "checkerboard", "dots", "fbm", "wrinkled", "marble"]
+            .map(|kind| format!("Texture \"t\" \"float\" \"{kind}\""));
+    for directive in shapes.iter().chain(&lights).chain(&materials).chain(&textures) {
+        let found = warnings(&format!("WorldBegin {directive} \"float zzz\" 1"));
+        assert!(found.iter().any(|warning| warning.contains("`zzz`")), "{directive}: {found:?}");
+    }
+}
+
+/// Millions of them must fit into memory.
+#[test]
+fn instances_take_few_bytes() {
+    assert!(size_of::<aureole_desc::Instance>() <= 128);
+    let desc = good(
+        "WorldBegin ObjectBegin \"o\" Shape \"sphere\" ObjectEnd Translate 1 2 3 ObjectInstance \"o\" ObjectInstance \"o\"",
+    );
+    assert_eq!((desc.instances.len(), desc.shapes.len()), (2, 0));
+    let place = desc.instances[1].transform().unwrap();
+    assert_eq!(place.point(aureole_math::Point3::ORIGIN).to_array(), [1.0, 2.0, 3.0]);
 }
 
 #[test]

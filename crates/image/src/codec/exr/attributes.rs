@@ -3,6 +3,8 @@
 //! [OpenEXR] "OpenEXR File Layout": after eight bytes of magic and version, records of a name, a type name (both ended by a
 //! zero byte), the value's size and the value; an empty name ends the header.
 
+use std::ops::Range;
+
 use exr::meta::attribute::{AttributeValue, Text};
 
 use crate::{Attribute, Metadata};
@@ -60,6 +62,15 @@ fn records(file: &[u8]) -> impl Iterator<Item = Record<'_>> {
         let next = record(rest)?;
         rest = &rest[next.whole.len()..];
         Some(next)
+    })
+}
+
+/// Where the list of the first part's channels is.
+pub(super) fn channel_list(file: &[u8]) -> Option<Range<usize>> {
+    let mut end = FIRST_RECORD;
+    records(file).find_map(|record| {
+        end += record.whole.len();
+        (record.name == b"channels").then(|| end - record.value.len()..end)
     })
 }
 

@@ -1,9 +1,11 @@
 //! OpenEXR, through the `exr` crate.
 
 mod attributes;
+mod chroma;
 mod decode;
 mod encode;
 mod planes;
+mod steps;
 
 pub(super) use decode::decode;
 pub(super) use encode::encode;

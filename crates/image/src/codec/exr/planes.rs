@@ -9,11 +9,12 @@ use exr::block::read;
 use exr::image::write::WritableImage;
 use exr::image::{AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Layer};
 use exr::meta::attribute::{IntegerBounds, LineOrder, SampleType, Text};
-use exr::meta::header::{Header, ImageAttributes, LayerAttributes};
+use exr::meta::header::{ImageAttributes, LayerAttributes};
 use exr::prelude::{Compression, Vec2};
 
 use super::attributes;
-use super::decode::each_block;
+use super::decode::{check, each_block};
+use super::steps::Steps;
 use crate::error::Fault;
 use crate::{ImageError, ImageLimits, Metadata};
 
@@ -105,44 +106,32 @@ impl Planes {
 
 fn decode(bytes: &[u8], limits: &ImageLimits) -> Result<Planes, Fault> {
     let reader = read(Cursor::new(bytes), false).map_err(Fault::content)?;
-    let [header] = reader.headers() else { return Err(Fault::content("it has several parts")) };
+    let meta = reader.meta_data().clone();
+    let [header] = &meta.headers[..] else { return Err(Fault::content("it has several parts")) };
     check(header, bytes.len(), limits)?;
     let Vec2(width, height) = header.layer_size;
     let mut planes: Vec<Option<Plane>> =
         header.channels.list.iter().map(|channel| empty(channel.sample_type, width * height)).collect();
     let names: Vec<String> = header.channels.list.iter().map(|channel| channel.name.to_string()).collect();
 
-    each_block(reader, |header, block| {
+    let mut is_whole = true;
+    each_block(reader, &meta, &Steps::default(), |header, block| {
         for line in block.lines(&header.channels) {
             let at = line.location;
             let start = at.position.1 * width + at.position.0;
             let Some(plane) = planes.get_mut(at.channel).and_then(Option::as_mut) else { continue };
             let numbers = line.value.as_chunks().0;
-            match plane {
-                Plane::Float(values) => fill(values, start, numbers, f32::from_ne_bytes)?,
-                Plane::Uint(values) => fill(values, start, numbers, u32::from_ne_bytes)?,
-            }
+            is_whole &= match plane {
+                Plane::Float(values) => fill(values, start, numbers, f32::from_ne_bytes),
+                Plane::Uint(values) => fill(values, start, numbers, u32::from_ne_bytes),
+            };
         }
-        Ok(())
     })?;
+    if !is_whole {
+        return Err(Fault::content("a block lies outside"));
+    }
     let channels = names.into_iter().zip(planes).filter_map(|(name, plane)| Some((name, plane?))).collect();
     Ok(Planes { width, height, channels, metadata: attributes::read(bytes) })
-}
-
-/// Checks what a header asks for, before memory is taken for it.
-fn check(header: &Header, file_size: usize, limits: &ImageLimits) -> Result<(), Fault> {
-    if header.deep {
-        return Err(Fault::content("deep data is not supported"));
-    }
-    if header.channels.list.iter().any(|channel| (channel.sampling.0, channel.sampling.1) != (1, 1)) {
-        return Err(Fault::content("channels of lower resolution than the picture are not supported"));
-    }
-    // Every chunk has an eight-byte offset in a table.
-    if header.chunk_count > file_size / 8 {
-        return Err(Fault::content("it is too short for its number of blocks"));
-    }
-    let (width, height) = (header.layer_size.0 as u64, header.layer_size.1 as u64);
-    limits.check(width, height, header.channels.list.len() as u64, 4).map(drop)
 }
 
 fn empty(kind: SampleType, size: usize) -> Option<Plane> {
@@ -153,16 +142,11 @@ fn empty(kind: SampleType, size: usize) -> Option<Plane> {
     }
 }
 
-fn fill<T>(
-    values: &mut [T],
-    start: usize,
-    numbers: &[[u8; 4]],
-    number: impl Fn([u8; 4]) -> T,
-) -> Result<(), Fault> {
-    let target = values.get_mut(start..start + numbers.len());
-    let target = target.ok_or_else(|| Fault::content("a block lies outside"))?;
+/// Whether there was room for all numbers.
+fn fill<T>(values: &mut [T], start: usize, numbers: &[[u8; 4]], number: impl Fn([u8; 4]) -> T) -> bool {
+    let Some(target) = values.get_mut(start..start + numbers.len()) else { return false };
     target.iter_mut().zip(numbers).for_each(|(value, &bytes)| *value = number(bytes));
-    Ok(())
+    true
 }
 
 #[cfg(test)]
