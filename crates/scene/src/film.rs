@@ -2,7 +2,7 @@
 
 use aureole_desc::{Limits, Node, SceneDesc, SceneError, Span};
 use aureole_elements::FilmSpec;
-use aureole_spectrum::Spectrum;
+use aureole_spectrum::{Spectrum, xyz_from_srgb};
 
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +60,8 @@ pub struct Film {
     pub gain: f32,
     /// Samples with a channel above this, after the gain, are scaled down to it; infinite for none.
     pub max_component: f32,
+    /// What the channels are that this counts for.
+    pub max_component_of: Colors,
 }
 
 impl Film {
@@ -74,6 +76,7 @@ impl Film {
             has_alpha: false,
             gain: 1.0,
             max_component: f32::INFINITY,
+            max_component_of: Colors::Rgb,
         }
     }
 
@@ -85,8 +88,15 @@ impl Film {
     /// A sample as the film takes it: no brighter than its limit, which counts after the gain.
     #[inline]
     pub fn limited(&self, radiance: Spectrum) -> Spectrum {
-        let [r, g, b] = radiance.rgb();
-        let brightest = r.max(g).max(b) * self.gain;
+        if self.max_component == f32::INFINITY {
+            return radiance;
+        }
+        let [x, y, z] = match self.max_component_of {
+            Colors::Rgb => radiance.rgb(),
+            Colors::Luminance => [xyz_from_srgb(radiance.rgb())[1]; 3],
+            Colors::Xyz => xyz_from_srgb(radiance.rgb()),
+        };
+        let brightest = x.max(y).max(z) * self.gain;
         if brightest > self.max_component { radiance * (self.max_component / brightest) } else { radiance }
     }
 
@@ -130,6 +140,8 @@ impl Film {
         film.gain = params.float_in("gain", 1.0, 0.0, 1e6)?;
         if params.has("max_component") {
             film.max_component = params.float_in("max_component", 0.0, 0.0, f32::INFINITY)?;
+            film.max_component_of =
+                params.one_of("max_component_of", &[("rgb", Colors::Rgb), ("xyz", Colors::Xyz)])?;
         }
         film.check(limits, node.span)?;
         Ok(film)

@@ -79,11 +79,13 @@ pub(super) struct Flags {
     pub edge_scale: f64,
     /// Pictures are read at their full size only.
     pub no_texture_filter: bool,
+    /// Samples lie in the middle of their pixels.
+    pub no_pixel_jitter: bool,
 }
 
 impl Default for Flags {
     fn default() -> Self {
-        Self { edge_scale: 1.0, no_texture_filter: false }
+        Self { edge_scale: 1.0, no_texture_filter: false, no_pixel_jitter: false }
     }
 }
 

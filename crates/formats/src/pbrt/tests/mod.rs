@@ -1,5 +1,6 @@
 //! Directives, parameters and mistakes.
 
+mod cameras;
 mod semantics;
 
 use aureole_desc::{Report, SceneDesc, SceneError, Sources, Value};
