@@ -224,7 +224,7 @@ fn lights_are_what_they_say() {
 fn what_stands_in_for_others_is_warned_about_once() {
     for text in [
         "Integrator \"bdpt\" \"bool visualizestrategies\" true \"integer maxdepth\" 3",
-        "Camera \"realistic\" \"string lensfile\" \"a.dat\" \"float focusdistance\" 3",
+        "Camera \"fisheye\" \"float fov\" 30",
         "Sampler \"stratified\" \"bool jitter\" false",
     ] {
         assert_eq!(warnings(&format!("{text} WorldBegin")).len(), 1, "{text}");
