@@ -18,24 +18,18 @@ pub fn read(path: &Path, limits: &Limits, at: Span) -> Result<Tabulated, SceneEr
     decode(&String::from_utf8_lossy(&bytes)).map_err(|error| error.in_file(path, at))
 }
 
+/// Reads a file of nothing but numbers, in the same notation.
+pub(crate) fn read_numbers(path: &Path, limits: &Limits, at: Span) -> Result<Vec<f32>, SceneError> {
+    let bytes = file::read_bytes(path, limits, at)?;
+    numbers(&String::from_utf8_lossy(&bytes)).map_err(|error| error.in_file(path, at))
+}
+
 /// Reads a spectrum from memory.
 ///
 /// # Errors
 /// As [`read`].
 pub fn decode(text: &str) -> Result<Tabulated, MeshError> {
-    let mut numbers: Vec<f32> = Vec::new();
-    for (number, line) in lines(without_mark(text.as_bytes())) {
-        let line = String::from_utf8_lossy(line);
-        let data = line.split('#').next().unwrap_or("");
-        let words = data.split(|c: char| c == ',' || c == ';' || c.is_whitespace());
-        for word in words.filter(|word| !word.is_empty()) {
-            let value = word.parse::<f32>().ok().filter(|x| x.is_finite());
-            numbers.push(value.ok_or_else(|| {
-                let word: String = word.chars().take(32).collect();
-                MeshError::content(format!("line {number}: a finite number is wanted, not `{word}`"))
-            })?);
-        }
-    }
+    let numbers = numbers(text)?;
     let (pairs, rest) = numbers.as_chunks::<2>();
     if !rest.is_empty() || pairs.is_empty() {
         let found = numbers.len();
@@ -49,6 +43,23 @@ pub fn decode(text: &str) -> Result<Tabulated, MeshError> {
     }
     let (lambda, values) = pairs.iter().map(|&[lambda, value]| (lambda, value)).unzip();
     Ok(Tabulated { lambda, values })
+}
+
+fn numbers(text: &str) -> Result<Vec<f32>, MeshError> {
+    let mut numbers: Vec<f32> = Vec::new();
+    for (line_number, line) in lines(without_mark(text.as_bytes())) {
+        let line = String::from_utf8_lossy(line);
+        let data = line.split('#').next().unwrap_or("");
+        let words = data.split(|c: char| c == ',' || c == ';' || c.is_whitespace());
+        for word in words.filter(|word| !word.is_empty()) {
+            let number = word.parse::<f32>().ok().filter(|x| x.is_finite());
+            numbers.push(number.ok_or_else(|| {
+                let word: String = word.chars().take(32).collect();
+                MeshError::content(format!("line {line_number}: a finite number is wanted, not `{word}`"))
+            })?);
+        }
+    }
+    Ok(numbers)
 }
 
 #[cfg(test)]

@@ -63,7 +63,8 @@ impl FilmFile {
     /// # Errors
     /// [`ImageError::Encode`].
     pub fn encode(&self) -> Result<Vec<u8>, ImageError> {
-        let shape @ FilmShape { full, crop, border, colors, has_alpha, gain, max_component, max_xyz } =
+        let shape
+        @ FilmShape { full, crop, border, colors, has_alpha, gain, max_component, max_component_of } =
             self.film.shape();
         let area = shape.area();
         let mut planes = Planes {
@@ -80,7 +81,7 @@ impl FilmFile {
         fact("crop", format!("{} {} {} {}", crop.x, crop.y, crop.width, crop.height));
         fact("border", format!("{} {}", border[0], border[1]));
         fact("image", format!("{} {}", kind_of_image(colors, has_alpha), gain.to_bits()));
-        fact("limit", format!("{} {}", max_component.to_bits(), max_xyz.to_bits()));
+        fact("limit", format!("{} {}", max_component.to_bits(), max_component_of as u32));
         fact("layers", self.film.layer_names().join("\n"));
         fact("samples", format!("{} {}", self.samples.start, self.samples.end));
         fact("spp", self.spp.to_string());
@@ -150,20 +151,24 @@ fn shape(metadata: &Metadata, full_width: u32, full_height: u32) -> Result<FilmS
     let [x, y, width, height] = numbers(metadata, "crop")?;
     let [border_x, border_y] = numbers(metadata, "border")?;
     let [kind, gain] = numbers(metadata, "image")?;
-    let [max_component, max_xyz] = numbers(metadata, "limit")?;
+    let [max_component, limited] = numbers(metadata, "limit")?;
     shape.crop = Crop { x, y, width, height };
     shape.border = [border_x, border_y];
     let kinds = COLORS.into_iter().flat_map(|colors| [(colors, false), (colors, true)]);
     let known = kinds.into_iter().find(|(colors, alpha)| kind_of_image(*colors, *alpha) == kind);
     (shape.colors, shape.has_alpha) = known.unwrap_or_default();
     shape.gain = f32::from_bits(gain);
-    (shape.max_component, shape.max_xyz) = (f32::from_bits(max_component), f32::from_bits(max_xyz));
+    shape.max_component = f32::from_bits(max_component);
+    let limited = COLORS.into_iter().find(|colors| *colors as u32 == limited);
+    shape.max_component_of = limited.unwrap_or_default();
     let inside = |start: u32, size: u32, whole: u32| {
         size > 0 && start.checked_add(size).is_some_and(|end| end <= whole)
     };
-    let fits = inside(x, width, full_width) && inside(y, height, full_height) && known.is_some();
-    let fits =
-        fits && (0.0..=1e6).contains(&shape.gain) && shape.max_component >= 0.0 && shape.max_xyz >= 0.0;
+    let fits = inside(x, width, full_width)
+        && inside(y, height, full_height)
+        && known.is_some()
+        && limited.is_some();
+    let fits = fits && (0.0..=1e6).contains(&shape.gain) && shape.max_component >= 0.0;
     // What the filters' reach may be at most.
     if fits && border_x.max(border_y) < 256 {
         Ok(shape)

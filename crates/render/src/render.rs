@@ -6,7 +6,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use aureole_desc::SceneError;
-use aureole_elements::camera::CameraSample;
+use aureole_elements::camera::{CameraRay, CameraSample};
 use aureole_elements::sampler::SampleKey;
 use aureole_image::Image;
 use aureole_math::Point2;
@@ -308,7 +308,7 @@ impl Job<'_> {
         let layers = self.integrator.layers().len();
         for (i, &radiance) in worker.radiance.iter().enumerate() {
             let id = worker.ids[i];
-            let radiance = self.scene.film.limited(radiance);
+            let radiance = self.scene.film.limited(radiance * worker.starts[i].weight);
             let value = SampleValue { radiance, layers: &worker.batch.layers()[i * layers..][..layers] };
             if !tile.add(id.x - area.x, id.y - area.y, value, &worker.footprints[i]) {
                 self.note_non_finite(id);
@@ -367,7 +367,8 @@ pub(crate) fn start_path(
     let film = Point2::new(id.x as f32 + 0.5, id.y as f32 + 0.5) + footprint.offset;
     let camera_sample = CameraSample { film, lens: sampler.get_2d(key, 1), time: sampler.get_1d(key, 2) };
     const { assert!(FIRST_FREE_DIMENSION == 3) };
-    (PathStart { ray: scene.camera.generate_ray(&camera_sample), key }, footprint)
+    let CameraRay { ray, weight } = scene.camera.generate_ray(&camera_sample);
+    (PathStart { ray, weight, key }, footprint)
 }
 
 /// A thread's memory, kept from batch to batch.

@@ -179,7 +179,7 @@ pub struct Replay {
     pub integrator: String,
     /// What happened, in order. Integrators other than `path` tell of the start only.
     pub events: Vec<Event>,
-    /// The sample's radiance, exactly as in a render.
+    /// The radiance along the sample's ray, exactly as in a render; the camera's weight is not in it.
     pub radiance: Spectrum,
 }
 

@@ -238,7 +238,7 @@ fn films_limit_their_samples() {
     let mut b = Builder::new();
     b.light("constant", Params::new().with("radiance", Value::Float(2.0)));
     b.camera([0.0; 3], [0.0, 0.0, 1.0], Vector3::Y);
-    b.expect("path", &[("film.max_xyz", "0.5")], 0.5 / 1.08906);
+    b.expect("path", &[("film.max_component", "0.5"), ("film.max_component_of", "xyz")], 0.5 / 1.08906);
 }
 
 /// A black square in even surroundings, on its way from a place to another.

@@ -493,7 +493,10 @@ impl Compiler<'_> {
         // Many samples a pixel do part of the filtering themselves, as in pbrt.
         let is_filtered = self.resolve.textures.iter().any(|(_, texture)| texture.is_filtered());
         let samples = sampler.sample_count().max(1) as f32;
-        let footprint_scale = if is_filtered { samples.sqrt().recip().max(0.125) } else { 0.0 };
+        // They do so as far as they are spread over it.
+        let spread = (filter.radius().x + filter.radius().y).min(1.0);
+        let narrow = 1.0 - spread * (1.0 - samples.sqrt().recip());
+        let footprint_scale = if is_filtered { narrow.max(0.125) } else { 0.0 };
         let environments =
             self.lights.iter().filter(|(_, light)| light.is_environment()).map(|(id, _)| id).collect();
         let origins = Origins { materials: self.resolve.material_nodes(), ..self.origins };

@@ -60,8 +60,8 @@ pub struct Film {
     pub gain: f32,
     /// Samples with a channel above this, after the gain, are scaled down to it; infinite for none.
     pub max_component: f32,
-    /// The same for CIE X, Y and Z.
-    pub max_xyz: f32,
+    /// What the channels are that this counts for.
+    pub max_component_of: Colors,
 }
 
 impl Film {
@@ -76,7 +76,7 @@ impl Film {
             has_alpha: false,
             gain: 1.0,
             max_component: f32::INFINITY,
-            max_xyz: f32::INFINITY,
+            max_component_of: Colors::Rgb,
         }
     }
 
@@ -88,14 +88,16 @@ impl Film {
     /// A sample as the film takes it: no brighter than its limit, which counts after the gain.
     #[inline]
     pub fn limited(&self, radiance: Spectrum) -> Spectrum {
-        let most = |[a, b, c]: [f32; 3]| a.max(b).max(c) * self.gain;
-        let excess = most(radiance.rgb()) / self.max_component;
-        let excess = if self.max_xyz.is_finite() {
-            excess.max(most(xyz_from_srgb(radiance.rgb())) / self.max_xyz)
-        } else {
-            excess
+        if self.max_component == f32::INFINITY {
+            return radiance;
+        }
+        let [x, y, z] = match self.max_component_of {
+            Colors::Rgb => radiance.rgb(),
+            Colors::Luminance => [xyz_from_srgb(radiance.rgb())[1]; 3],
+            Colors::Xyz => xyz_from_srgb(radiance.rgb()),
         };
-        if excess > 1.0 { radiance / excess } else { radiance }
+        let brightest = x.max(y).max(z) * self.gain;
+        if brightest > self.max_component { radiance * (self.max_component / brightest) } else { radiance }
     }
 
     /// The film of a description, without compiling it.
@@ -136,8 +138,11 @@ impl Film {
             ],
         )?;
         film.gain = params.float_in("gain", 1.0, 0.0, 1e6)?;
-        let mut limit = |name| params.float_in(name, f32::INFINITY, 0.0, f32::INFINITY);
-        (film.max_component, film.max_xyz) = (limit("max_component")?, limit("max_xyz")?);
+        if params.has("max_component") {
+            film.max_component = params.float_in("max_component", 0.0, 0.0, f32::INFINITY)?;
+            film.max_component_of =
+                params.one_of("max_component_of", &[("rgb", Colors::Rgb), ("xyz", Colors::Xyz)])?;
+        }
         film.check(limits, node.span)?;
         Ok(film)
     }

@@ -26,7 +26,7 @@ pub const FILM: Manual = Manual {
         ),
         param("gain", "float", "1", "what the image is multiplied by"),
         param("max_component", "float", "", "samples with a brighter channel are scaled down to it"),
-        param("max_xyz", "float", "", "the same for CIE X, Y and Z"),
+        param("max_component_of", "string", "rgb", "what these channels are: `rgb` or `xyz`"),
         param("filename", "string", "", "where programs write the image unless told otherwise"),
     ],
 };

@@ -5,9 +5,9 @@
 //! | `cameras` | cameras | | from left to right; the film's width is shared evenly |
 
 use aureole_desc::{ParamDoc, Params, SceneError};
-use aureole_math::{Point2, Ray};
+use aureole_math::Point2;
 
-use super::{Camera, CameraOps, CameraSample};
+use super::{Camera, CameraOps, CameraRay, CameraSample};
 use crate::{Element, FilmSpec, Resolver};
 
 /// Cameras side by side.
@@ -39,7 +39,7 @@ impl Element for Batch {
 }
 
 impl CameraOps for Batch {
-    fn generate_ray(&self, sample: &CameraSample) -> Ray {
+    fn generate_ray(&self, sample: &CameraSample) -> CameraRay {
         let place = ((sample.film.x / self.width) as usize).min(self.cameras.len() - 1);
         let film = Point2::new(sample.film.x - place as f32 * self.width, sample.film.y);
         self.cameras[place].generate_ray(&CameraSample { film, ..*sample })

@@ -10,7 +10,7 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Frame, Point3, Ray, Vector3, warp};
 
 use super::radiance_meter::axis;
-use super::{CameraOps, CameraSample};
+use super::{CameraOps, CameraRay, CameraSample};
 use crate::{Element, Resolver};
 
 /// A sensor infinitely far away.
@@ -42,7 +42,7 @@ impl Element for Distant {
 }
 
 impl CameraOps for Distant {
-    fn generate_ray(&self, sample: &CameraSample) -> Ray {
+    fn generate_ray(&self, sample: &CameraSample) -> CameraRay {
         let middle = self.target.unwrap_or_else(|| {
             let disk = warp::square_to_disk_concentric(sample.lens);
             let frame = Frame::from_normal(self.direction);
@@ -59,5 +59,6 @@ impl CameraOps for Distant {
             t_max: f32::INFINITY,
             time: 0.0,
         }
+        .into()
     }
 }

@@ -12,7 +12,7 @@ use std::f32::consts::PI;
 use aureole_desc::{ParamDoc, Params, SceneError, Span};
 use aureole_math::{Frame, Point2, Point3, Ray, Vector3, offset_ray_origin, warp};
 
-use super::{CameraOps, CameraSample};
+use super::{CameraOps, CameraRay, CameraSample};
 use crate::{Element, FilmSpec, Resolver, Shape};
 
 /// A meter of irradiance.
@@ -43,7 +43,7 @@ impl Element for IrradianceMeter {
 }
 
 impl CameraOps for IrradianceMeter {
-    fn generate_ray(&self, sample: &CameraSample) -> Ray {
+    fn generate_ray(&self, sample: &CameraSample) -> CameraRay {
         let inside = |x: f32, size: u32| (x / size as f32).clamp(0.0, 1.0 - f32::EPSILON);
         let place =
             Point2::new(inside(sample.film.x, self.film.width), inside(sample.film.y, self.film.height));
@@ -56,7 +56,7 @@ impl CameraOps for IrradianceMeter {
             // A shape without area: nothing arrives.
             None => (Point3::ORIGIN, Vector3::Z),
         };
-        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, time: 0.0 }
+        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, time: 0.0 }.into()
     }
 
     fn gain(&self) -> f32 {

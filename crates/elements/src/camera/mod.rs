@@ -10,6 +10,7 @@ mod orthographic;
 mod perspective;
 mod placed;
 mod radiance_meter;
+mod realistic;
 mod spherical;
 
 use std::fmt::Debug;
@@ -25,6 +26,7 @@ pub use irradiance_meter::IrradianceMeter;
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
 pub use radiance_meter::RadianceMeter;
+pub use realistic::Realistic;
 pub use spherical::Spherical;
 
 /// Which ray of a camera is wanted.
@@ -38,10 +40,33 @@ pub struct CameraSample {
     pub time: f32,
 }
 
+/// A ray that carries light to a place on the film.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraRay {
+    /// The ray, with a unit direction in the world.
+    pub ray: Ray,
+    /// What its radiance counts for; zero where no light reaches the film that way.
+    pub weight: f32,
+}
+
+impl From<Ray> for CameraRay {
+    fn from(ray: Ray) -> Self {
+        Self { ray, weight: 1.0 }
+    }
+}
+
+impl CameraRay {
+    /// A ray that meets nothing, for light that is stopped within the camera.
+    fn stopped() -> Self {
+        let ray = Ray { t_max: -1.0, ..Ray::new(Point3::ORIGIN, Vector3::Z) };
+        Self { ray, weight: 0.0 }
+    }
+}
+
 /// What every camera can do.
 pub trait CameraOps: Debug + Send + Sync {
-    /// The ray, with a unit direction in the world, that carries light to a place on the film.
-    fn generate_ray(&self, sample: &CameraSample) -> Ray;
+    /// The ray that carries light to a place on the film.
+    fn generate_ray(&self, sample: &CameraSample) -> CameraRay;
 
     /// How far a place with unit normal `n` moves on its plane from a pixel to the next, across and down, if the camera sees it
     /// directly; zero where that is not known.
@@ -69,6 +94,7 @@ registry! {
     perspective::Perspective as Perspective = "perspective",
     orthographic::Orthographic as Orthographic = "orthographic",
     spherical::Spherical as Spherical = "spherical",
+    realistic::Realistic as Realistic = "realistic",
     radiance_meter::RadianceMeter as RadianceMeter = "radiance_meter",
     distant::Distant as Distant = "distant",
     irradiance_meter::IrradianceMeter as IrradianceMeter = "irradiance_meter",
@@ -76,9 +102,9 @@ registry! {
 }
 
 impl Camera {
-    /// The ray, with a unit direction in the world, that carries light to a place on the film.
+    /// The ray that carries light to a place on the film.
     #[inline]
-    pub fn generate_ray(&self, sample: &CameraSample) -> Ray {
+    pub fn generate_ray(&self, sample: &CameraSample) -> CameraRay {
         each_camera!(self, c => c.generate_ray(sample))
     }
 
@@ -209,7 +235,7 @@ mod tests {
             let camera = Camera::build(&node, &mut NoResolver::default()).expect("is sound");
             let ray = |x: f32, y: f32| {
                 let lens = Point2::new(0.5, 0.5);
-                camera.generate_ray(&CameraSample { film: Point2::new(x, y), lens, time: 0.0 })
+                camera.generate_ray(&CameraSample { film: Point2::new(x, y), lens, time: 0.0 }).ray
             };
             let n = Vector3::new(0.3, 0.8, -0.7).normalized();
             let p = ray(60.0, 150.0).at(5.0);

@@ -6,7 +6,7 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point3, Ray, Vector3, warp};
 
 use super::projective::{self, Projective};
-use super::{CameraOps, CameraSample};
+use super::{CameraOps, CameraRay, CameraSample};
 use crate::texture::onto_plane;
 use crate::{Element, Resolver};
 
@@ -26,7 +26,7 @@ impl Element for Orthographic {
 }
 
 impl CameraOps for Orthographic {
-    fn generate_ray(&self, sample: &CameraSample) -> Ray {
+    fn generate_ray(&self, sample: &CameraSample) -> CameraRay {
         let camera = &self.projective;
         let screen = camera.screen(sample.film);
         let mut origin = Point3::new(-screen.x, screen.y, 0.0);
@@ -38,17 +38,20 @@ impl CameraOps for Orthographic {
             direction = (focus - origin).normalized();
         }
         let time = camera.place.time(sample.time);
-        camera.place.at(time, |place| {
-            let axis = place.vector(direction);
-            let length = axis.length();
-            Ray {
-                origin: place.point(origin),
-                direction: axis / length,
-                t_min: camera.near * length,
-                t_max: camera.far * length,
-                time,
-            }
-        })
+        camera
+            .place
+            .at(time, |place| {
+                let axis = place.vector(direction);
+                let length = axis.length();
+                Ray {
+                    origin: place.point(origin),
+                    direction: axis / length,
+                    t_min: camera.near * length,
+                    t_max: camera.far * length,
+                    time,
+                }
+            })
+            .into()
     }
 
     fn footprint(&self, _: Point3, n: Vector3) -> [Vector3; 2] {

@@ -14,7 +14,7 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point3, Ray, Vector3, warp};
 
 use super::projective::{self, Projective};
-use super::{CameraOps, CameraSample, FovAxis, cone_footprint};
+use super::{CameraOps, CameraRay, CameraSample, FovAxis, cone_footprint};
 use crate::texture::onto_plane;
 use crate::{Element, Resolver};
 
@@ -81,7 +81,7 @@ impl Element for Perspective {
 
 impl CameraOps for Perspective {
     #[inline]
-    fn generate_ray(&self, sample: &CameraSample) -> Ray {
+    fn generate_ray(&self, sample: &CameraSample) -> CameraRay {
         let camera = &self.projective;
         let screen = camera.screen(sample.film);
         let mut origin = Point3::ORIGIN;
@@ -96,13 +96,16 @@ impl CameraOps for Perspective {
         // Clipping planes are measured along the axis.
         let per_depth = 1.0 / direction.z;
         let time = camera.place.time(sample.time);
-        camera.place.at(time, |place| Ray {
-            origin: place.point(origin),
-            direction: place.vector(direction).normalized(),
-            t_min: camera.near * per_depth,
-            t_max: camera.far * per_depth,
-            time,
-        })
+        camera
+            .place
+            .at(time, |place| Ray {
+                origin: place.point(origin),
+                direction: place.vector(direction).normalized(),
+                t_min: camera.near * per_depth,
+                t_max: camera.far * per_depth,
+                time,
+            })
+            .into()
     }
 
     fn footprint(&self, p: Point3, n: Vector3) -> [Vector3; 2] {

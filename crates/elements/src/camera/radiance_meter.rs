@@ -7,7 +7,7 @@
 use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point3, Ray, Transform, Vector3};
 
-use super::{CameraOps, CameraSample};
+use super::{CameraOps, CameraRay, CameraSample};
 use crate::{Element, Resolver};
 
 /// A meter of radiance.
@@ -38,7 +38,8 @@ impl Element for RadianceMeter {
 }
 
 impl CameraOps for RadianceMeter {
-    fn generate_ray(&self, _: &CameraSample) -> Ray {
+    fn generate_ray(&self, _: &CameraSample) -> CameraRay {
         Ray { origin: self.origin, direction: self.direction, t_min: 0.0, t_max: f32::INFINITY, time: 0.0 }
+            .into()
     }
 }

@@ -13,7 +13,7 @@ use aureole_desc::{ParamDoc, Params, SceneError};
 use aureole_math::{Point2, Point3, Ray, Vector3, warp};
 
 use super::placed::{self, Placed};
-use super::{CameraOps, CameraSample, cone_footprint};
+use super::{CameraOps, CameraRay, CameraSample, cone_footprint};
 use crate::{Element, FilmSpec, Resolver};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +51,7 @@ impl Element for Spherical {
 }
 
 impl CameraOps for Spherical {
-    fn generate_ray(&self, sample: &CameraSample) -> Ray {
+    fn generate_ray(&self, sample: &CameraSample) -> CameraRay {
         let uv = Point2::new(sample.film.x / self.film.width as f32, sample.film.y / self.film.height as f32);
         let direction = match self.mapping {
             Mapping::LatLong => {
@@ -65,10 +65,12 @@ impl CameraOps for Spherical {
             }
         };
         let time = self.place.time(sample.time);
-        self.place.at(time, |place| {
-            let ray = Ray::new(place.point(Point3::ORIGIN), place.vector(direction).normalized());
-            Ray { time, ..ray }
-        })
+        self.place
+            .at(time, |place| {
+                let ray = Ray::new(place.point(Point3::ORIGIN), place.vector(direction).normalized());
+                Ray { time, ..ray }
+            })
+            .into()
     }
     fn footprint(&self, p: Point3, n: Vector3) -> [Vector3; 2] {
         let d = p - self.place.start.point(Point3::ORIGIN);

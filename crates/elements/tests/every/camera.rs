@@ -2,7 +2,7 @@
 
 use aureole_desc::{Family, Node, Params, Span, Value};
 use aureole_elements::Camera;
-use aureole_elements::camera::CameraSample;
+use aureole_elements::camera::{CameraRay, CameraSample};
 use aureole_math::{Pcg32, Point2, Point3, Ray, Transform, Vector3, warp};
 use aureole_testkit::{Chi2Config, chi2_sphere};
 
@@ -20,7 +20,7 @@ fn camera(kind: &str, params: Params) -> Camera {
 
 /// The ray through a place on the film, in fractions of its size from the top left.
 fn ray(camera: &Camera, x: f32, y: f32, lens: Point2) -> Ray {
-    camera.generate_ray(&CameraSample { film: Point2::new(x * FILM[0], y * FILM[1]), lens, time: 0.0 })
+    camera.generate_ray(&CameraSample { film: Point2::new(x * FILM[0], y * FILM[1]), lens, time: 0.0 }).ray
 }
 
 const CENTER: Point2 = Point2 { x: 0.5, y: 0.5 };
@@ -61,7 +61,7 @@ fn a_batch_shows_its_cameras_side_by_side() {
         let node = Node::new(Family::Camera, kind, params([place()]), Span::NONE);
         let alone = Camera::build(&node, &mut world).expect("is sound");
         let film = Point2::new(0.2 * 128.0, 0.7 * 128.0);
-        let expected = alone.generate_ray(&CameraSample { film, lens, time: 0.0 });
+        let expected = alone.generate_ray(&CameraSample { film, lens, time: 0.0 }).ray;
         let found = ray(&both, x + 0.1, 0.7, lens);
         assert!((found.direction - expected.direction).length() < 1e-5, "{kind}");
         assert!((found.origin - expected.origin).length() < 1e-4, "{kind}");
@@ -94,12 +94,17 @@ fn every_kind_makes_unit_rays() {
         let camera = match *kind {
             "batch" => batch(["perspective", "orthographic"]),
             "irradiance_meter" => irradiance_meter(),
+            "realistic" => crate::realistic::camera(8.0, &[place()]),
             _ => camera(kind, params([place()])),
         };
         for _ in 0..1000 {
-            let r = ray(&camera, rng.next_f32(), rng.next_f32(), rng.point2());
+            let film = Point2::new(rng.next_f32() * FILM[0], rng.next_f32() * FILM[1]);
+            let sample = CameraSample { film, lens: rng.point2(), time: 0.0 };
+            let CameraRay { ray: r, weight } = camera.generate_ray(&sample);
             assert!((r.direction.length() - 1.0).abs() < 1e-5, "{kind}: {r:?}");
-            assert!(r.origin.is_finite() && r.t_min >= 0.0 && r.t_max > r.t_min, "{kind}: {r:?}");
+            assert!(r.origin.is_finite() && r.t_min >= 0.0, "{kind}: {r:?}");
+            // What a lens stops meets nothing.
+            assert!((r.t_max > r.t_min) == (weight > 0.0), "{kind}: {r:?} {weight}");
         }
     }
 }

@@ -7,6 +7,7 @@ mod camera;
 mod filter;
 mod light;
 mod material;
+mod realistic;
 mod sampler;
 mod shape;
 mod texture;

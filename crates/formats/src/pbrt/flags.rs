@@ -7,10 +7,16 @@ use super::params::number;
 use super::state::Reader;
 
 /// Options that have nothing to do with the picture, or say how pbrt runs.
-const WITHOUT_EFFECT: [&str; 5] =
-    ["msereferenceimage", "msereferenceout", "pixelstats", "rendercoordsys", "wavefront"];
+const WITHOUT_EFFECT: [&str; 6] = [
+    "disablewavelengthjitter",
+    "msereferenceimage",
+    "msereferenceout",
+    "pixelstats",
+    "rendercoordsys",
+    "wavefront",
+];
 /// Options that would change the picture or its noise.
-const IGNORED: [&str; 3] = ["disablepixeljitter", "disablewavelengthjitter", "seed"];
+const IGNORED: [&str; 1] = ["seed"];
 
 impl Reader<'_, '_> {
     pub(super) fn option(&mut self, lexer: &mut Lexer<'_>, at: Span) -> Result<(), SceneError> {
@@ -25,6 +31,7 @@ impl Reader<'_, '_> {
             name.chars().filter(|c| !matches!(c, '-' | '_')).map(|c| c.to_ascii_lowercase()).collect();
         match name.as_str() {
             "forcediffuse" => self.flags.force_diffuse = boolean(&value, at)?,
+            "disablepixeljitter" => self.flags.no_pixel_jitter = boolean(&value, at)?,
             "disabletexturefiltering" => self.flags.no_texture_filter = boolean(&value, at)?,
             "displacementedgescale" => {
                 let scale = number(&value, at)?;
@@ -41,7 +48,8 @@ impl Reader<'_, '_> {
                 }
             }
             _ => {
-                let own = ["disabletexturefiltering", "displacementedgescale", "forcediffuse"];
+                let own =
+                    ["disablepixeljitter", "disabletexturefiltering", "displacementedgescale", "forcediffuse"];
                 let known = own.iter().chain(&WITHOUT_EFFECT).chain(&IGNORED);
                 let known = known.map(|name| (*name).to_owned()).collect();
                 return Err(SceneError::UnknownName { what: "option", name, known, at });

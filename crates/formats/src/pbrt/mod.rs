@@ -5,6 +5,7 @@
 //!
 //! Reference: the pbrt-v4 input file format, <https://pbrt.org/fileformat-v4>.
 
+mod cameras;
 mod color;
 mod curve;
 mod directives;

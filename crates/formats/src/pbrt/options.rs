@@ -1,7 +1,7 @@
-//! Camera, film, filter, sampler, integrator.
+//! Film, filter, sampler, integrator.
 
 use aureole_desc::{Family, Params, SceneError, Value};
-use aureole_math::{Transform, Vector3};
+use aureole_math::Transform;
 
 use super::params::ParamSet;
 use super::state::{PendingCamera, Reader};
@@ -43,8 +43,9 @@ impl Reader<'_, '_> {
         let sensor = film.text("sensor")?.unwrap_or("cie1931").to_owned();
         if let Some(most) = film.try_float("maxcomponentvalue")? {
             // Its channels are those of the sensor.
-            let limit = if sensor == "cie1931" { "max_xyz" } else { "max_component" };
-            params.push(limit, Value::Float(most), film.at("maxcomponentvalue"));
+            let channels = if sensor == "cie1931" { "xyz" } else { "rgb" };
+            params.push("max_component", Value::Float(most), film.at("maxcomponentvalue"));
+            params.push("max_component_of", Value::String(channels.into()), film.at("maxcomponentvalue"));
         }
         if sensor != "cie1931" {
             self.warn(format!("sensor `{sensor}` is taken as `cie1931`"), film.at("sensor"));
@@ -52,21 +53,26 @@ impl Reader<'_, '_> {
         if film.float("whitebalance", 0.0)? != 0.0 {
             self.warn("the film's colours are not balanced: white is that of D65", film.at("whitebalance"));
         }
-        // Nothing to do with the picture here: a film's size is for the lenses of `realistic`; what files hold is the
-        // program's business.
-        for name in ["diagonal", "savefp16", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"] {
+        let diagonal = film.float("diagonal", 35.0)?;
+        // What files hold is the program's business.
+        for name in ["savefp16", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"] {
             film.get(name);
         }
         film.finish("Film", self.context.report);
         self.desc.film = Some(self.add(Family::Film, "film", params, film.span));
         self.defaults()?;
+        if self.flags.no_pixel_jitter {
+            // A filter so narrow that all samples lie in the middle.
+            let params = Params::new().with("radius", Value::Vec2([1e-6; 2]));
+            self.desc.filter = Some(self.add(Family::Filter, "box", params, film.span));
+        }
         // Without any, the camera is at the origin and looks along +Z.
         let camera = self.camera.take().unwrap_or_else(|| PendingCamera {
             kind: "perspective".into(),
             params: ParamSet::empty(film.span),
             world_from_camera: [Transform::IDENTITY; 2],
         });
-        self.camera_node(&camera, size)
+        self.camera_node(&camera, size, diagonal)
     }
 
     /// What pbrt takes where a file says nothing: a Gaussian, 16 samples, paths of five bounces.
@@ -130,106 +136,6 @@ impl Reader<'_, '_> {
         {
             params.push(name, Value::Int(value), film.span);
         }
-        Ok(())
-    }
-
-    fn camera_node(&mut self, camera: &PendingCamera, size: [i64; 2]) -> Result<(), SceneError> {
-        let PendingCamera { kind, params: given, world_from_camera } = camera;
-        let at = given.span;
-        // pbrt's camera space is left-handed: its x axis points to the right of the image.
-        let mirrored = world_from_camera.map(|place| place * Transform::scale(Vector3::new(-1.0, 1.0, 1.0)));
-        let mut params = Params::new();
-        let kind = match kind.as_str() {
-            "perspective" | "orthographic" | "spherical" => kind.as_str(),
-            other => {
-                self.warn(
-                    format!("camera `{other}` is not rendered yet: `perspective` stands in for it"),
-                    at,
-                );
-                for name in ["lensfile", "aperturediameter", "focusdistance", "aperture"] {
-                    given.get(name);
-                }
-                "perspective"
-            }
-        };
-        if kind == "spherical" {
-            self.place(*world_from_camera, given, &mut params)?;
-            let mapping = match given.text("mapping")?.unwrap_or("equalarea") {
-                "equalarea" => "equal_area",
-                "equirectangular" => "latlong",
-                other => {
-                    let message = format!("`mapping` is `equalarea` or `equirectangular`, not `{other}`");
-                    return Err(SceneError::invalid(message, given.at("mapping")));
-                }
-            };
-            params.push("mapping", Value::String(mapping.into()), at);
-            // pbrt reads these and does not use them either.
-            for name in ["lensradius", "focaldistance", "frameaspectratio", "screenwindow"] {
-                given.get(name);
-            }
-        } else {
-            self.place(mirrored, given, &mut params)?;
-            self.projective(kind, given, size, &mut params)?;
-        }
-        given.finish("Camera", self.context.report);
-        let id = self.add(Family::Camera, kind, params, at);
-        self.desc.cameras.push(id);
-        Ok(())
-    }
-
-    /// Where a camera is, and when. Time counts from the first of the transform times, in their distance.
-    fn place(
-        &mut self,
-        [start, end]: [Transform; 2],
-        given: &ParamSet,
-        params: &mut Params,
-    ) -> Result<(), SceneError> {
-        let at = given.span;
-        params.push("world_from_camera", Value::Transform(start), at);
-        if start != end {
-            params.push("world_from_camera_end", Value::Transform(end), at);
-        }
-        let [first, last] = self.transform_times;
-        for (theirs, ours, default) in
-            [("shutteropen", "shutter_open", 0.0), ("shutterclose", "shutter_close", 1.0)]
-        {
-            let time = given.float(theirs, default)?;
-            if self.has_motion || start != end {
-                params.push(ours, Value::Float((time - first) / (last - first)), given.at(theirs));
-            }
-        }
-        Ok(())
-    }
-
-    fn projective(
-        &mut self,
-        kind: &str,
-        given: &ParamSet,
-        size: [i64; 2],
-        params: &mut Params,
-    ) -> Result<(), SceneError> {
-        let at = given.span;
-        let aspect = given.float("frameaspectratio", size[0] as f64 / size[1] as f64)?;
-        let default = if aspect > 1.0 {
-            [-aspect, aspect, -1.0, 1.0]
-        } else {
-            [-1.0, 1.0, -1.0 / aspect, 1.0 / aspect]
-        };
-        let window = match given.floats("screenwindow")? {
-            Some(list) => <[f32; 4]>::try_from(list)
-                .map_err(|_| SceneError::invalid("`screenwindow` must be four numbers: x0 x1 y0 y1", at))?
-                .map(f64::from),
-            None => default,
-        };
-        // At distance one the window of a perspective camera is that of the screen times the tangent of half its angle.
-        let reach =
-            if kind == "perspective" { (given.float("fov", 90.0)?.to_radians() * 0.5).tan() } else { 1.0 };
-        let window: Vec<f32> = window.iter().map(|x| (x * reach) as f32).collect();
-        params.push("screen_window", Value::Floats(window.into()), at);
-        params.push("near_clip", Value::Float(0.0), at);
-        params.push("far_clip", Value::Float(1e30), at);
-        params.push("aperture_radius", Value::Float(given.float("lensradius", 0.0)?), at);
-        params.push("focus_distance", Value::Float(given.float("focaldistance", 1e6)?), at);
         Ok(())
     }
 

@@ -84,11 +84,13 @@ pub(super) struct Flags {
     pub no_texture_filter: bool,
     /// Every surface is matte.
     pub force_diffuse: bool,
+    /// Samples lie in the middle of their pixels.
+    pub no_pixel_jitter: bool,
 }
 
 impl Default for Flags {
     fn default() -> Self {
-        Self { edge_scale: 1.0, no_texture_filter: false, force_diffuse: false }
+        Self { edge_scale: 1.0, no_texture_filter: false, force_diffuse: false, no_pixel_jitter: false }
     }
 }
 

@@ -209,6 +209,7 @@ struct Layered {
 impl Layered {
     /// Adds the values of one ray.
     fn values(&self, scene: &Scene, start: &PathStart, radiance: Spectrum, batch: &mut Batch) {
+        let radiance = radiance * start.weight;
         let hit = self.looks.then(|| scene.closest_hit(&start.ray)).flatten();
         batch.rays += u64::from(self.looks);
         let at = hit.map(|hit| (hit, scene.interaction(&start.ray, &hit)));

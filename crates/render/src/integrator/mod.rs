@@ -28,6 +28,8 @@ pub const FIRST_FREE_DIMENSION: u32 = 3;
 pub struct PathStart {
     /// The ray.
     pub ray: Ray,
+    /// What the camera multiplies its radiance by.
+    pub weight: f32,
     /// What random numbers are drawn from.
     pub key: SampleKey,
 }

@@ -1,5 +1,6 @@
 //! Directives, parameters and mistakes.
 
+mod cameras;
 mod semantics;
 mod surfaces;
 

@@ -251,7 +251,7 @@ fn films_are_cropped_and_limited() {
             Some(Value::Int(n)) => *n,
             _ => -1,
         });
-        (crop, film.get("max_xyz").cloned())
+        (crop, film.get("max_component").cloned())
     };
     assert_eq!(film("\"float maxcomponentvalue\" 10"), ([-1; 4], Some(Value::Float(10.0))));
     assert_eq!(film("\"float cropwindow\" [0.5 0.25 0 0.5]").0, [25, 25, 0, 25]);
@@ -327,7 +327,7 @@ fn lights_are_what_they_say() {
 fn what_stands_in_for_others_is_warned_about_once() {
     for text in [
         "Integrator \"bdpt\" \"bool visualizestrategies\" true \"integer maxdepth\" 3",
-        "Camera \"realistic\" \"string lensfile\" \"a.dat\" \"float focusdistance\" 3",
+        "Camera \"fisheye\" \"float fov\" 30",
         "Sampler \"stratified\" \"bool jitter\" false",
     ] {
         assert_eq!(warnings(&format!("{text} WorldBegin")).len(), 1, "{text}");
