@@ -48,8 +48,12 @@ impl Reader<'_, '_> {
                 }
             }
             _ => {
-                let own =
-                    ["disablepixeljitter", "disabletexturefiltering", "displacementedgescale", "forcediffuse"];
+                let own = [
+                    "disablepixeljitter",
+                    "disabletexturefiltering",
+                    "displacementedgescale",
+                    "forcediffuse",
+                ];
                 let known = own.iter().chain(&WITHOUT_EFFECT).chain(&IGNORED);
                 let known = known.map(|name| (*name).to_owned()).collect();
                 return Err(SceneError::UnknownName { what: "option", name, known, at });

@@ -256,7 +256,10 @@ fn integrators() {
         ),
         (r#"<integrator type="ptracer"/>"#, "path(see_through=false)"),
         (r#"<integrator type="direct_projective"><integer name="sppi" value="4"/></integrator>"#, "direct()"),
-        (r#"<integrator type="prb_projective"><string name="guiding" value="grid"/></integrator>"#, "path(see_through=false)"),
+        (
+            r#"<integrator type="prb_projective"><string name="guiding" value="grid"/></integrator>"#,
+            "path(see_through=false)",
+        ),
         (r#"<integrator type="depth"/>"#, "depth(from_near_clip=true)"),
         (r#"<integrator type="volpath"/>"#, "path()"),
         (
