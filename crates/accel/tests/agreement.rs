@@ -226,11 +226,10 @@ fn camera(n: usize, eye: Point3) -> Vec<Ray> {
     (0..n)
         .map(|i| {
             let (tile, pixel) = (i / 16, i % 16);
-            let at = |cell: usize, fine: usize| {
-                (cell as f32 + (fine as f32 + rng.clone().next_f32()) / 4.0) / 16.0
-            };
-            let target =
-                Point3::new(at(tile % 16, pixel % 4), at(tile / 16 % 16, pixel / 4), rng.next_f32() * 0.01);
+            let mut at =
+                |cell: usize, fine: usize| (cell as f32 + (fine as f32 + rng.next_f32()) / 4.0) / 16.0;
+            let (x, y) = (at(tile % 16, pixel % 4), at(tile / 16 % 16, pixel / 4));
+            let target = Point3::new(x, y, rng.next_f32() * 0.01);
             Ray::new(eye, target - eye)
         })
         .collect()
