@@ -68,7 +68,7 @@ fn table(bytes: &[u8]) -> Option<Planes> {
 /// A film of a few pixels as a file, and as the bytes that [`table`] understands.
 pub(crate) fn samples() -> Vec<Sample> {
     let (width, height) = (3u8, 2u8);
-    let facts = "layout=3\nfilm=4 4 1 1\ncrop=1 1 3 2\nborder=0 0\nimage=0 1065353216\nlimit=2139095040\nlayers=\nsamples=0 4\nspp=4\nfingerprint=seed\t0|shape\tabc";
+    let facts = "layout=4\nfilm=4 4 1 1\ncrop=1 1 3 2\nborder=0 0\nimage=0 1065353216\nlimit=2139095040 0\nlayers=\nsamples=0 4\nspp=4\nfingerprint=seed\t0|shape\tabc";
     let mut bytes = [&[width, height][..], facts.as_bytes(), b"\n\n"].concat();
     let pixels = usize::from(width) * usize::from(height);
     let mut rng = Pcg32::new(1);

@@ -181,9 +181,14 @@ fn closed_bodies_are_dark_inside_and_lit_outside() {
                 counts[0] += 1;
                 continue;
             };
+            // Across the edges between two triangles, or over a bent patch, the ball is not quite convex.
+            const DENT: f32 = 0.1;
             let outside = place.point((warp::square_to_uniform_sphere(rng.point2()) * 3.0).to_point());
             let towards = outside - surface.p;
             let goes_in = towards.dot(surface.ng) * ray.direction.dot(surface.ng) < 0.0;
+            if !goes_in && towards.dot(surface.ng).abs() < DENT * towards.length() {
+                continue;
+            }
             let leaving = surface.spawn_ray(towards, 0.0).until(1.0 - 1e-5);
             counts[0] += u32::from(scene.occluded(&leaving) != goes_in);
             counts[1] += 1;

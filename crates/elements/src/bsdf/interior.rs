@@ -51,9 +51,9 @@ impl Interior {
     /// each. Infinite where that channel is never stopped.
     #[inline]
     pub fn sample_flight(&self, throughput: Spectrum, uc: f32, u: f32) -> f32 {
-        let shares = throughput.to_array();
-        let mut rest = uc * shares.iter().sum::<f32>();
-        let last = self.extinction.to_array().len() - 1;
+        let shares = throughput.rgb();
+        let mut rest = uc * sum(throughput);
+        let last = shares.len() - 1;
         let chosen = shares.iter().position(|share| {
             rest -= share;
             rest < 0.0
@@ -85,10 +85,10 @@ impl Interior {
     }
 }
 
-/// The lanes together.
+/// The lanes that have a meaning together.
 #[inline]
 fn sum(s: Spectrum) -> f32 {
-    s.average() * 4.0
+    s.rgb().iter().sum()
 }
 
 #[cfg(test)]

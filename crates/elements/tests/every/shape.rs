@@ -317,7 +317,7 @@ fn derivatives_follow_the_surface() {
         let shape = &world.shapes[example.shape];
         let (center, radius) = ball_around(&shape.bounds());
         let (mut tested, mut wrong) = (0, 0);
-        for _ in 0..2000 {
+        for _ in 0..10_000 {
             let ray = random_line(center, radius, &mut rng);
             let shift = warp::square_to_uniform_sphere(rng.point2()) * (2e-3 * radius);
             let beside = Ray::new(ray.origin + shift, ray.direction);
