@@ -226,7 +226,7 @@ impl Bsdf {
         self.lobes.iter().map(share).sum()
     }
 
-    /// Roughens mirrors and windows, and what is nearly so: see [`Lobe::regularized`].
+    /// Roughens mirrors and windows, and what is nearly so: see `Lobe::regularized`.
     pub fn regularize(&mut self) {
         for placed in &mut self.lobes {
             placed.lobe = placed.lobe.regularized();

@@ -68,10 +68,10 @@ fn look(lens: &Lens, reach: f64, film: [f64; 3], within: Bounds, cells: usize) -
         });
         if passes {
             let known = found.get_or_insert(Bounds { min: p, max: p });
-            for i in 0..2 {
-                known.min[i] = known.min[i].min(p[i]);
-                known.max[i] = known.max[i].max(p[i]);
-            }
+            *known = Bounds {
+                min: std::array::from_fn(|i| known.min[i].min(p[i])),
+                max: std::array::from_fn(|i| known.max[i].max(p[i])),
+            };
         }
     }
     found.map(|Bounds { min, max }| Bounds {

@@ -89,8 +89,7 @@ fn pictures_wrap_in_four_ways() {
             "WorldBegin Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" \"string wrap\" \"{wrap}\""
         );
         let desc = good(&text);
-        let found = desc.nodes().find_map(|(_, node)| node.params.get("wrap").cloned());
-        found
+        desc.nodes().find_map(|(_, node)| node.params.get("wrap").cloned())
     };
     for (theirs, ours) in [("black", "black"), ("octahedralsphere", "octahedral")] {
         assert_eq!(wrap(theirs), word(ours));

@@ -81,7 +81,7 @@ impl Steps {
             lines * (size.0 / step.0) * channel.sample_type.bytes_per_sample()
         };
         let bytes: usize = header.channels.list.iter().map(bytes_of).sum();
-        if bytes % size.area() != 0 {
+        if !bytes.is_multiple_of(size.area()) {
             return Err(Fault::content("channels of such lower resolutions are not supported"));
         }
         header.channels.bytes_per_pixel = bytes / size.area();
